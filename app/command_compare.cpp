@@ -174,8 +174,8 @@ std::string area_text(const std::vector<AreaDifference>& differences) {
 }
 
 std::string cut_apart_text(const LayerFile& first, const LayerFile& second) {
-    const Layer& one = first.planes().front();
-    const Layer& other = second.planes().front();
+    const Layer& one = first.planes.front();
+    const Layer& other = second.planes.front();
     return fmt::format(
         "{} and {} are cut at different heights: the layer from z = {} to {} mm at {} mm in the first "
         "and at {} mm in the second; formats that do not keep the cut, such as CLI, are read as if it "
@@ -186,9 +186,9 @@ std::string cut_apart_text(const LayerFile& first, const LayerFile& second) {
 int run_compare(const CompareArguments& arguments, const Context& context) {
     const Execution execution = arguments.run.execution(context);
     arguments.limits.prepare_memory();
-    const LayerFile first = read_layers(arguments.inputs[0], arguments.limits.of_passing_layers(), execution);
+    const LayerFile first = read_layers(arguments.inputs[0], arguments.limits.of_layers(), execution);
     const LayerFile second =
-        read_layers(arguments.inputs[1], arguments.limits.of_passing_layers(memory_of(first)), execution);
+        read_layers(arguments.inputs[1], arguments.limits.of_layers(first.bytes), execution);
     for (const LayerFile* file : {&first, &second})
         context.messages.warn_of(input_name(file->path), file->warnings);
 

@@ -56,15 +56,13 @@ int run_convert(const ConvertArguments& arguments, const Context& context) {
     const std::uint64_t max_memory = arguments.limits.max_memory.value_or(0);
     options.limits = layer_limits(execution, max_memory, 0);
     const LayerSteps steps = arguments.making.steps();
-    LayerReadOptions reading = arguments.limits.of_layers();
-    reading.layers = layers_kept(steps);
-    LayerFile file = read_layers(arguments.input, reading, execution);
+    LayerFile file = read_layers(arguments.input, arguments.limits.of_layers(), execution);
     options.page.title = title_of(arguments.input);
     warn_about(file, file.warnings, arguments.strict, context.messages);
     LayerChanges changes;
     if (steps.any())
         changes = take_steps(steps, file, arguments.strict, context.messages, execution, max_memory).all;
-    LayerFileInfo info = info_of(file, execution);
+    LayerFileInfo info = info_of(file);
     if (!arguments.label.empty()) {
         if (file.parts.size() > 1)
             throw Error(ErrorKind::usage,

@@ -102,7 +102,7 @@ int describe_mesh(const InfoArguments& arguments, const MeshFile& file, const Co
 
 bool holds_vectors(const LayerFile& file) {
     return std::any_of(file.parts.begin(), file.parts.end(),
-                       [](const LayerPart& part) { return part.exposure.has_value(); });
+                       [](const PartInfo& part) { return part.exposure.has_value(); });
 }
 
 /// Returns the figures of vectors. Times and energies are included if the file contains speeds and powers;
@@ -129,9 +129,9 @@ Figures vector_figures(const std::vector<ExposureResult>& exposures) {
 
 Figures figures_of(const LayerFile& file, const FileFigures& measured) {
     std::uint64_t other_hatches = 0; // without an exposure
-    for (std::size_t i = 0; i < file.parts.size(); ++i)
-        other_hatches += file.parts[i].exposure ? 0 : file.hatch_lines(i);
-    const LayerStack& layers = file.planes();
+    for (const PartInfo& part : file.parts)
+        other_hatches += part.exposure ? 0 : part.hatch_lines;
+    const LayerStack& layers = file.planes;
     Figures figures = layer_figures(layers.size(), measured.contours, measured.volume_mm3);
     Figure range{"z_range", Json(), "from"};
     if (!layers.empty()) {
@@ -156,7 +156,7 @@ Figures figures_of(const LayerFile& file, const FileFigures& measured) {
 
 std::vector<std::string> labels_of(const LayerFile& file) {
     std::vector<std::string> labels;
-    for (const LayerPart& part : file.parts)
+    for (const PartInfo& part : file.parts)
         labels.push_back(part.label);
     return labels;
 }
@@ -217,7 +217,6 @@ int describe(const std::string& input, const InfoArguments& arguments, const Con
              const Execution& execution) {
     MeshReadOptions options = arguments.limits.of_meshes();
     options.strict = arguments.strict;
-    options.layers = LayersKept::if_faster;
     const auto file = read_any(input, options, execution);
     if (const auto* mesh = std::get_if<MeshFile>(&file))
         return describe_mesh(arguments, *mesh, context, execution);

@@ -63,7 +63,7 @@ OptionGroup output_options(ScanCommandArguments& target) {
 /// Rejects scan vectors, because they do not describe material: hatches have no contours, and each contour
 /// would be hatched again.
 void check_layers(const LayerFile& file) {
-    for (const LayerPart& part : file.parts)
+    for (const PartInfo& part : file.parts)
         if (part.exposure)
             throw Error(ErrorKind::input,
                         fmt::format("{}: holds scan vectors already ({}); give the layers that they are made "
@@ -103,20 +103,16 @@ int run_scan(const ScanCommandArguments& arguments, const Context& context) {
     arguments.limits.prepare_memory();
     if (!arguments.stats.empty())
         check_writable(arguments.stats);
-    const LayerFile file = read_layers(arguments.input, arguments.limits.of_passing_layers(), execution);
+    const LayerFile file = read_layers(arguments.input, arguments.limits.of_layers(), execution);
     check_layers(file);
-    std::uint64_t hatch_lines = 0;
-    for (std::size_t i = 0; i < file.parts.size(); ++i)
-        hatch_lines += file.hatch_lines(i);
     const std::uint64_t max_memory = arguments.limits.max_memory.value_or(0);
     warn_about(file, file.warnings, arguments.strict, context.messages);
     Findings of_file;
-    if (hatch_lines > 0)
-        of_file.add({.kind = FindingKind::replaced_hatch_lines, .count = hatch_lines});
+    if (const std::uint64_t lines = file.hatch_lines(); lines > 0)
+        of_file.add({.kind = FindingKind::replaced_hatch_lines, .count = lines});
     warn_about(file, of_file.texts(), arguments.strict, context.messages);
-    const LayerFileInfo info = info_of(file, execution);
     const FileResult result =
-        scan_layers(arguments.output, format, file, info, strategy, options, execution, max_memory);
+        scan_layers(arguments.output, format, file, strategy, options, execution, max_memory);
     warn_about(file, result.findings.texts(), false, context.messages);
     context.messages.warn_of(output_name(arguments.output), result.warnings);
     after_output(arguments.output, [&] {
@@ -131,7 +127,7 @@ int run_scan(const ScanCommandArguments& arguments, const Context& context) {
     });
     const std::string text =
         fmt::format("{}: {} from {} ({}) as {}, {}\n  {}\n", one_line(output_name(arguments.output)),
-                    counted(info.layers, "layer"), one_line(file.path), file.format, format.name,
+                    counted(file.planes.size(), "layer"), one_line(file.path), file.format, format.name,
                     byte_size(result.bytes), scan_text(result.exposures));
     context.messages.written(text, arguments.stats == "-" ? "-" : arguments.output);
     return 0;

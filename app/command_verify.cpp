@@ -176,14 +176,14 @@ std::string cut_hint(const LayerFile& file, const Agree& agree) {
            "cuts, such as json; where they were rounded before, say by how much with --tolerance MM";
 }
 
-/// Moves the parts with scan vectors (or, if `vectors` is false, the others) out of the file.
-LayerFile taken_parts(LayerFile& file, bool vectors) {
-    LayerFile some{.path = file.path, .format = file.format, .rounding = file.rounding, .rule = file.rule};
-    some.stream = file.stream; // files with both kinds have none
-    for (LayerPart& part : file.parts)
-        if (part.exposure.has_value() == vectors)
-            some.parts.push_back(std::move(part));
-    std::erase_if(file.parts, [&](const LayerPart& part) { return part.exposure.has_value() == vectors; });
+/// Returns the file with its parts that are scan vectors or, if `vectors` is false, with the others.
+LayerFile with_kind(const LayerFile& file, bool vectors) {
+    std::vector<std::size_t> parts;
+    for (std::size_t i = 0; i < file.parts.size(); ++i)
+        if (file.parts[i].exposure.has_value() == vectors)
+            parts.push_back(i);
+    LayerFile some = file;
+    static_cast<PlaneSource&>(some) = with_parts(file, std::move(parts));
     return some;
 }
 
@@ -204,11 +204,7 @@ int run_verify(const VerifyArguments& arguments, const Context& context) {
     const Execution execution = arguments.run.execution(context);
     arguments.limits.prepare_memory();
 
-    LayerFile file = read_layers(arguments.input, arguments.limits.of_passing_layers(), execution);
-    const auto of_vectors = std::count_if(file.parts.begin(), file.parts.end(),
-                                          [](const LayerPart& part) { return part.exposure.has_value(); });
-    if (of_vectors != 0 && of_vectors != std::ssize(file.parts)) // their parts are checked apart
-        file.keep_layers(arguments.limits.of_layers(), execution);
+    LayerFile file = read_layers(arguments.input, arguments.limits.of_layers(), execution);
     for (std::string& warning : file.warnings)
         warning = with_options(std::move(warning));
     std::optional<ScanStrategy> strategy;
@@ -222,18 +218,17 @@ int run_verify(const VerifyArguments& arguments, const Context& context) {
     if (!arguments.mesh.empty()) {
         const std::array inputs{
             PlateInput{.path = arguments.mesh, .unit_mm = arguments.placement.unit_mm(), .placement = pose}};
-        plate = load_plate(inputs, arguments.limits.of_meshes(memory_of(file)), execution);
+        plate = load_plate(inputs, arguments.limits.of_meshes(file.bytes), execution);
         context.messages.warn_of(input_name(arguments.mesh), plate->files.front().warnings);
         constexpr std::uint64_t bytes_per_triangle = 64; // for joining all parts into one mesh
         if (plate->parts.size() > 1)
-            check_memory(*plate, bytes_per_triangle, arguments.limits.max_memory.value_or(0),
-                         memory_of(file));
+            check_memory(*plate, bytes_per_triangle, arguments.limits.max_memory.value_or(0), file.bytes);
         plate = repaired(std::move(*plate), arguments.repair, execution).plate;
         mesh = joined(*plate, execution);
     }
 
-    const LayerFile plain = taken_parts(file, false);
-    const LayerFile vectors = taken_parts(file, true);
+    const LayerFile plain = with_kind(file, false);
+    const LayerFile vectors = with_kind(file, true);
     const bool cut_is_assumed = mesh && arguments.slice_at.empty() && !layer_format(file.format, {}).cuts;
     bool ok = !arguments.strict || file.warnings.empty();
     Json object{{"path", arguments.input}, {"ok", ok}, {"warnings", file.warnings}};
@@ -251,8 +246,7 @@ int run_verify(const VerifyArguments& arguments, const Context& context) {
                           .tolerance_mm = arguments.tolerance,
                           .max_memory = arguments.limits.max_memory.value_or(0)};
     if (!plain.parts.empty()) {
-        for (std::size_t i = 0; i < plain.parts.size(); ++i)
-            options.hatch_lines += plain.hatch_lines(i);
+        options.hatch_lines = plain.hatch_lines();
         const Verification found = verify_file(plain, options, execution);
         ok = ok && found.ok();
         object.update(verification_json(found));

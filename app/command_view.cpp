@@ -103,8 +103,8 @@ std::uint64_t view_layers(const ViewArguments& arguments, LayerFile file, const 
         planes = take_steps(steps, file, false, messages, execution, max_memory).planes;
     for (std::size_t i = 0; i < planes.size(); ++i)
         if (planes[i].changed_layers > 0)
-            notes.changes.push_back({file.planes()[i].index, planes[i]});
-    const LayerFileInfo info = info_of(file, execution);
+            notes.changes.push_back({file.planes[i].index, planes[i]});
+    const LayerFileInfo info = info_of(file);
     const auto page = open_layer_page(output, info, page_options(arguments.input));
     write_planes(*page, file, !steps.any(), false, messages, execution, max_memory);
     page->add_notes(std::move(notes));
@@ -130,9 +130,7 @@ int run_view(const ViewArguments& arguments, const Context& context) {
                                                             : std::vector<NamedFile>{});
     const Execution execution = arguments.run.execution(context);
     arguments.limits.prepare_memory();
-    MeshReadOptions reading = arguments.limits.of_meshes();
-    reading.layers = layers_kept(arguments.making.steps());
-    auto read = read_any(arguments.input, reading, execution);
+    auto read = read_any(arguments.input, arguments.limits.of_meshes(), execution);
     auto* const file = std::get_if<LayerFile>(&read);
     const std::uint64_t layers =
         file != nullptr

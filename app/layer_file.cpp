@@ -16,38 +16,6 @@
 #include <utility>
 
 namespace lamella::app {
-namespace {
-
-/// Returns the box, which is never empty.
-Box3 box_of(const LayerFileInfo& info, const LayerStack& layers) {
-    Box3 box;
-    for (const PartInfo& part : info.parts)
-        box.add(part.box);
-    if (box.empty())
-        box.add(Point3{});
-    box.min.z = layers.front().bottom;
-    box.max.z = layers.back().top;
-    return box;
-}
-
-} // namespace
-
-LayerFileInfo info_of(const LayerFile& file, const Execution& execution) {
-    const LayerStack& layers = file.planes();
-    if (layers.empty())
-        throw Error(ErrorKind::input, fmt::format("{}: holds no layers", file.path));
-    LayerFileInfo info{
-        .box = {}, .layers = layers.size(), .bottom = layers.front().bottom, .parts = {}, .rule = file.rule};
-    for (std::size_t i = 0; i < file.parts.size(); ++i) {
-        const LayerPart& part = file.parts[i];
-        info.parts.push_back(
-            {part.label.empty() ? PartInfo{}.label : part.label,
-             file.stream ? file.stream->boxes[i] : part_box(part.layers, part.hatches, execution),
-             part.exposure, part.support});
-    }
-    info.box = box_of(info, layers);
-    return info;
-}
 
 void warn_about(const LayerFile& file, const std::vector<std::string>& warnings, bool strict,
                 Messages& messages) {
@@ -63,22 +31,15 @@ void write_planes(LayerWriter& writer, const LayerFile& file, bool search_rings,
         warn_about(
             file, layer_findings(file, LayerUse::kept, InversionSearch::quick, execution, max_memory).texts(),
             strict, messages);
-    LayerFindingSearch search(file.planes().size(), LayerUse::kept, file.rounding, InversionSearch::quick,
+    LayerFindingSearch search(file.planes.size(), LayerUse::kept, file.rounding, InversionSearch::quick,
                               execution, max_memory);
-    lamella::write_planes(
-        writer, file.planes().size(),
-        [&](std::size_t i) {
-            ScanVectors plane = file.plane(i);
-            if (search_rings && !strict)
-                search.look_at(i, file, plane);
-            return plane;
-        },
-        file.for_planes(execution));
+    const PlaneSink write = [&](std::size_t i, const ScanVectors& plane) {
+        if (search_rings && !strict)
+            search.look_at(i, file, plane);
+        return writer.prepare(plane);
+    };
+    file.run(Stage::write, write, execution);
     warn_about(file, search.findings().texts(), strict, messages);
-}
-
-LayersKept layers_kept(const LayerSteps& steps) {
-    return steps.any() ? LayersKept::if_ample : LayersKept::if_faster;
 }
 
 StepChanges take_steps(const LayerSteps& steps, LayerFile& file, bool strict, Messages& messages,

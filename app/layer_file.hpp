@@ -14,18 +14,10 @@
 
 namespace lamella::app {
 
-/// Returns the header. Parts without a label get the default of PartInfo. The box extends from the bottom of
-/// the first layer to the top of the last. Throws Error{input} for a file without layers.
-[[nodiscard]] LayerFileInfo info_of(const LayerFile& file, const Execution& execution);
-
 /// Prints the warnings of the file and about its lost content. With `strict`, throws Error{defect} with the
 /// first warning instead.
 void warn_about(const LayerFile& file, const std::vector<std::string>& warnings, bool strict,
                 Messages& messages);
-
-/// Returns the layers that stay in memory if the steps are taken. Steps on layers that do not stay are taken
-/// twice.
-[[nodiscard]] LayersKept layers_kept(const LayerSteps& steps);
 
 struct StepChanges {
     std::vector<LayerChanges> planes;

@@ -267,15 +267,12 @@ MeshReadOptions ReadLimits::of_meshes(std::uint64_t held) const {
     return {.include = include,
             .max_triangles = max_triangles.value_or(0),
             .max_memory = max_memory.value_or(0),
-            .held = held};
+            .held = held,
+            .kept = KeptPlanes::if_faster};
 }
 
-LayerReadOptions ReadLimits::of_layers() const {
-    return {.max_memory = max_memory.value_or(0)};
-}
-
-LayerReadOptions ReadLimits::of_passing_layers(std::uint64_t held) const {
-    return {.max_memory = max_memory.value_or(0), .held = held, .layers = LayersKept::if_faster};
+LayerReadOptions ReadLimits::of_layers(std::uint64_t held) const {
+    return {.max_memory = max_memory.value_or(0), .held = held, .kept = KeptPlanes::if_faster};
 }
 
 Option include_option(ReadLimits& target) {

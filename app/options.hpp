@@ -93,9 +93,7 @@ struct ReadLimits {
     void prepare_memory() const noexcept;
     /// `held`: bytes that files read before still take.
     [[nodiscard]] MeshReadOptions of_meshes(std::uint64_t held = 0) const;
-    [[nodiscard]] LayerReadOptions of_layers() const;
-    /// For commands that need few layers at a time.
-    [[nodiscard]] LayerReadOptions of_passing_layers(std::uint64_t held = 0) const;
+    [[nodiscard]] LayerReadOptions of_layers(std::uint64_t held = 0) const;
 };
 [[nodiscard]] Option include_option(ReadLimits& target);
 [[nodiscard]] Option max_triangles_option(ReadLimits& target);

@@ -194,7 +194,7 @@ bool is_right(const Part& part, const ScanStrategy& strategy, const std::string&
     options.mesh = open_part(part, {}).mesh;
     options.rounding = file.rounding;
     options.strategy = strategy;
-    return verify_vectors(file.parts, options).ok();
+    return verify_vectors(file, options).ok();
 }
 
 int report(int argc, char** argv) {

@@ -44,7 +44,7 @@ using StackPointer = std::shared_ptr<Stack>;
 
 bool holds_scan_vectors(const LayerFile& file) {
     return std::any_of(file.parts.begin(), file.parts.end(),
-                       [](const LayerPart& part) { return part.exposure.has_value(); });
+                       [](const PartInfo& part) { return part.exposure.has_value(); });
 }
 
 bool holds_scan_vectors(const Stack& stack) {
@@ -68,11 +68,11 @@ StackPointer stack_of(const LayerFile& file, std::string label, LayerStack layer
 }
 
 /// Returns the hatch lines of all parts on each plane.
-std::vector<PointArray> merged_hatches(const LayerFile& file) {
-    std::vector<PointArray> merged(file.parts.front().layers.size());
+std::vector<PointArray> merged_hatches(const std::vector<LayerPart>& parts) {
+    std::vector<PointArray> merged(parts.front().layers.size());
     for (std::size_t plane = 0; plane < merged.size(); ++plane) {
         std::vector<Point2> ends;
-        for (const LayerPart& part : file.parts) {
+        for (const LayerPart& part : parts) {
             const std::span<const Point2> hatches = part.hatches_of(plane);
             ends.insert(ends.end(), hatches.begin(), hatches.end());
         }
@@ -83,12 +83,13 @@ std::vector<PointArray> merged_hatches(const LayerFile& file) {
 }
 
 /// Returns the stack of the file, with a stack of each part if there are several.
-StackPointer stack_of(LayerFile file) {
-    const bool several = file.parts.size() > 1;
-    LayerStack merged = several ? file.merged() : LayerStack();
-    std::vector<PointArray> hatches = several ? merged_hatches(file) : std::vector<PointArray>();
+StackPointer stack_of(const LayerFile& file, const Execution& execution) {
+    std::vector<LayerPart> read = file.in_memory(execution);
+    const bool several = read.size() > 1;
+    LayerStack merged = several ? file.merged(execution) : LayerStack();
+    std::vector<PointArray> hatches = several ? merged_hatches(read) : std::vector<PointArray>();
     std::vector<StackPointer> parts;
-    for (LayerPart& part : file.parts) {
+    for (LayerPart& part : read) {
         const StackPointer& stack =
             parts.emplace_back(stack_of(file, part.label, std::move(part.layers), std::move(part.hatches)));
         stack->exposure = std::move(part.exposure);
@@ -109,7 +110,7 @@ std::pair<StackPointer, py::list> read_stack(const py::object& source, std::uint
             return read_layers(from..., LayerReadOptions{.max_memory = max_memory}, execution);
         });
         warnings = std::move(file.warnings);
-        return stack_of(std::move(file));
+        return stack_of(file, execution);
     });
     return {read, message_texts(warnings)};
 }
@@ -133,7 +134,7 @@ read_either(const py::object& source, std::optional<double> unit_mm, bool strict
         }
         auto& layers = std::get<LayerFile>(file);
         warnings = std::move(layers.warnings);
-        return stack_of(std::move(layers));
+        return stack_of(layers, execution);
     });
     return {read, message_texts(warnings)};
 }

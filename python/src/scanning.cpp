@@ -218,16 +218,16 @@ void bind_losses(py::module_& module) {
             std::uint64_t hatch_lines = 0;
             for (const LayerPointer& layer : stack.layers)
                 hatch_lines += layer->hatches().size() / 2;
-            return with_hatch_lines(layer_findings(plain_parts(stack), LayerUse::scanned, stack.rounding,
-                                                   InversionSearch::full, execution),
+            return with_hatch_lines(layer_findings(source_of(plain_parts(stack), stack.rounding, execution),
+                                                   LayerUse::scanned, InversionSearch::full, execution),
                                     hatch_lines)
                 .texts();
         });
     });
     module.def("inverted_layers", [](const Stack& stack, unsigned threads, const py::object& progress) {
         return result_of(threads, progress, [&](const Execution& execution) {
-            return layer_findings(plain_parts(stack), LayerUse::kept, stack.rounding, InversionSearch::quick,
-                                  execution)
+            return layer_findings(source_of(plain_parts(stack), stack.rounding, execution), LayerUse::kept,
+                                  InversionSearch::quick, execution)
                 .texts();
         });
     });

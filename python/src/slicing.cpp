@@ -114,8 +114,9 @@ FileTexts doubts_of(const Stack& stack, const PlatePointer& plate) {
     return result_of(0, py::none(), [&](const Execution& execution) {
         FileTexts texts;
         for (std::size_t file = 0; file < files.size(); ++file)
-            for (std::string& text :
-                 layer_findings(files[file], LayerUse::cut, {}, InversionSearch::quick, execution).texts())
+            for (std::string& text : layer_findings(source_of(std::move(files[file]), {}, execution),
+                                                    LayerUse::cut, InversionSearch::quick, execution)
+                                         .texts())
                 texts.emplace_back(file, std::move(text));
         return texts;
     });

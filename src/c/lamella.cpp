@@ -251,7 +251,9 @@ lamella_layers sliced(const Plate& plate, Layering layering, const lamella_setti
     job.max_memory = memory_of(settings);
     const Plan plan = plan_of(job, plate, execution);
     lamella_layers result{slice(plate, plan, {.execution = execution}), plan.rule};
-    warn(layer_findings({&result.layers, 1}, LayerUse::cut, {}, InversionSearch::quick, execution).texts());
+    warn(layer_findings(source_of({result.layers}, {}, execution), LayerUse::cut, InversionSearch::quick,
+                        execution)
+             .texts());
     return result;
 }
 
@@ -260,10 +262,7 @@ lamella_layers merged(const LayerFile& file, const Execution& execution) {
     if (file.parts.size() > 1)
         warn({fmt::format("{}: the contours of {} parts are one layer on each plane", file.path,
                           file.parts.size())});
-    std::uint64_t hatches = 0;
-    for (const LayerPart& part : file.parts)
-        hatches += part.hatch_lines();
-    if (hatches > 0)
+    if (const std::uint64_t hatches = file.hatch_lines(); hatches > 0)
         warn({fmt::format("{}: {} left out", file.path, counted(hatches, "hatch line"))});
     return {file.merged(execution), file.rule};
 }

@@ -29,15 +29,11 @@ namespace lamella {
 
 namespace {
 
-bool is_drawn(const Layer& layer) {
-    return layer.contours() > 0;
-}
-
 std::vector<std::string> hatched_labels(const LayerFile& file) {
     std::vector<std::string> labels;
-    for (std::size_t i = 0; i < file.parts.size(); ++i)
-        if (file.hatch_lines(i) > 0)
-            labels.push_back(file.parts[i].label);
+    for (const PartInfo& part : file.parts)
+        if (part.hatch_lines > 0)
+            labels.push_back(part.label);
     std::sort(labels.begin(), labels.end());
     labels.erase(std::unique(labels.begin(), labels.end()), labels.end());
     return labels;
@@ -74,23 +70,9 @@ struct MovedPoints {
     double hatches = 0;
 };
 
-MovedPoints moved_points(const LayerFile& file, Executor& executor) {
-    if (file.stream)
-        return {moved_point(file.stream->largest_coordinate, file.rounding),
-                moved_point(file.stream->largest_hatch_coordinate, file.rounding)};
-    std::vector<MovedPoints> most(executor.workers());
-    executor.for_chunks(file.planes().size(), 1, [&](std::uint64_t i, std::uint64_t, unsigned worker) {
-        MovedPoints& moved = most[worker];
-        for (const LayerPart& part : file.parts) {
-            moved.contours =
-                std::max(moved.contours, moved_point(part.layers[i].points.span(), file.rounding));
-            moved.hatches = std::max(moved.hatches, moved_point(part.hatches_of(i), file.rounding));
-        }
-    });
-    for (const MovedPoints& moved : most)
-        most.front() = {std::max(most.front().contours, moved.contours),
-                        std::max(most.front().hatches, moved.hatches)};
-    return most.front();
+MovedPoints moved_points(const LayerFile& file) {
+    return {moved_point(file.largest_coordinate, file.rounding),
+            moved_point(file.largest_hatch_coordinate, file.rounding)};
 }
 
 void compare_ends(const std::vector<Point2>& first, const std::vector<Point2>& second,
@@ -113,7 +95,7 @@ bool is_same(double one, double other) noexcept {
     return std::abs(one - other) <= of_single_precision * std::max(std::abs(one), std::abs(other));
 }
 
-void compare_parameters(const LayerPart& first, const LayerPart& second, bool one_format,
+void compare_parameters(const PartInfo& first, const PartInfo& second, bool one_format,
                         std::vector<ParameterDifference>& differences) {
     for (const StrategyField<ParameterSet>& field : parameter_fields()) {
         const auto member = std::get<double ParameterSet::*>(field.member);
@@ -125,28 +107,24 @@ void compare_parameters(const LayerPart& first, const LayerPart& second, bool on
 }
 
 /// Returns the parts that have vectors. Some formats list no other parts.
-std::vector<const LayerPart*> exposed_parts(const LayerFile& file) {
-    std::vector<const LayerPart*> parts;
-    for (std::size_t i = 0; i < file.parts.size(); ++i) {
-        const LayerPart& part = file.parts[i];
-        if (part.exposure && (file.hatch_lines(i) > 0 ||
-                              (file.stream ? !file.stream->boxes[i].empty()
-                                           : std::any_of(part.layers.begin(), part.layers.end(), is_drawn))))
+std::vector<const PartInfo*> exposed_parts(const LayerFile& file) {
+    std::vector<const PartInfo*> parts;
+    for (const PartInfo& part : file.parts)
+        if (part.exposure && !part.box.empty())
             parts.push_back(&part);
-    }
     return parts;
 }
 
 /// Removes the pairs of equal keys from both lists, each in its order, and calls visit(one, other).
 template <class Key, class Visit>
-void take_pairs(std::vector<const LayerPart*>& first, std::vector<const LayerPart*>& second, const Key& key,
+void take_pairs(std::vector<const PartInfo*>& first, std::vector<const PartInfo*>& second, const Key& key,
                 const Visit& visit) {
-    std::map<decltype(key(*first.front())), std::deque<const LayerPart*>> others;
-    for (const LayerPart* const part : second)
+    std::map<decltype(key(*first.front())), std::deque<const PartInfo*>> others;
+    for (const PartInfo* const part : second)
         others[key(*part)].push_back(part);
-    std::set<const LayerPart*> taken;
-    std::erase_if(first, [&](const LayerPart* part) {
-        std::deque<const LayerPart*>& alike = others[key(*part)];
+    std::set<const PartInfo*> taken;
+    std::erase_if(first, [&](const PartInfo* part) {
+        std::deque<const PartInfo*>& alike = others[key(*part)];
         if (alike.empty())
             return false;
         visit(*part, *alike.front());
@@ -154,7 +132,7 @@ void take_pairs(std::vector<const LayerPart*>& first, std::vector<const LayerPar
         alike.pop_front();
         return true;
     });
-    std::erase_if(second, [&](const LayerPart* part) { return taken.count(part) != 0; });
+    std::erase_if(second, [&](const PartInfo* part) { return taken.count(part) != 0; });
 }
 
 /// Indices of parts in both files.
@@ -171,25 +149,25 @@ bool in_order(std::vector<PartPair> pairs) {
 std::vector<PartPair> compare_exposures(const LayerFile& first, const LayerFile& second,
                                         FileComparison& result) {
     const bool one_format = first.format == second.format;
-    std::vector<const LayerPart*> ones = exposed_parts(first);
-    std::vector<const LayerPart*> others = exposed_parts(second);
+    std::vector<const PartInfo*> ones = exposed_parts(first);
+    std::vector<const PartInfo*> others = exposed_parts(second);
     std::vector<PartPair> pairs;
-    const auto compare = [&](const LayerPart& one, const LayerPart& other) {
+    const auto compare = [&](const PartInfo& one, const PartInfo& other) {
         compare_parameters(one, other, one_format, result.parameters);
         pairs.emplace_back(&one - first.parts.data(), &other - second.parts.data());
     };
     take_pairs(
-        ones, others, [](const LayerPart& part) { return std::string_view(part.label); }, compare);
+        ones, others, [](const PartInfo& part) { return std::string_view(part.label); }, compare);
     take_pairs(
         ones, others,
-        [](const LayerPart& part) {
+        [](const PartInfo& part) {
             return std::tuple(part.exposure->region, part.exposure->kind, part.exposure->contour);
         },
         compare);
     if (one_format) { // some formats do not keep labels and regions
-        for (const LayerPart* const part : ones)
+        for (const PartInfo* const part : ones)
             result.only_first.push_back(part->label);
-        for (const LayerPart* const part : others)
+        for (const PartInfo* const part : others)
             result.only_second.push_back(part->label);
     }
     if (one_format)
@@ -200,10 +178,8 @@ std::vector<PartPair> compare_exposures(const LayerFile& first, const LayerFile&
 }
 
 bool has_other_hatches(const LayerFile& file) {
-    for (std::size_t i = 0; i < file.parts.size(); ++i)
-        if (!file.parts[i].exposure && file.hatch_lines(i) > 0)
-            return true;
-    return false;
+    return std::any_of(file.parts.begin(), file.parts.end(),
+                       [](const PartInfo& part) { return !part.exposure && part.hatch_lines > 0; });
 }
 
 /// Returns whether each exposure of a plane has the contours of its partner.
@@ -231,10 +207,10 @@ bool followed_alike(std::span<const PartPair> pairs, const ScanVectors& first, c
     });
 }
 
-StackPlanes planes_of(const LayerFile& file, std::span<const PlaneContent> contents) {
-    StackPlanes planes{file.planes(), file.rounding, {}};
-    for (const PlaneContent& content : contents)
-        planes.drawn.push_back(content.contours || content.hatch_lines > 0);
+StackPlanes planes_of(const LayerFile& file) {
+    StackPlanes planes{file.planes, file.rounding, {}};
+    for (const PlaneContent& content : file.contents)
+        planes.drawn.push_back(content.points > 0 || content.hatch_lines > 0);
     return planes;
 }
 
@@ -264,8 +240,6 @@ bool FileComparison::agree() const noexcept {
 FileComparison compare_files(const LayerFile& first, const LayerFile& second,
                              const FileComparisonOptions& options, const Execution& execution) {
     check_tolerance(options.tolerance_mm);
-    check(first);
-    check(second);
     FileComparison result{.layers = {}, .details = {}, .parameters = {}, .only_first = {}, .only_second = {}};
     const std::vector<PartPair> pairs = compare_exposures(first, second, result);
     const std::vector<std::string> labels = hatched_labels(first);
@@ -283,11 +257,10 @@ FileComparison compare_files(const LayerFile& first, const LayerFile& second,
     Executor executor(second.for_planes(first.for_planes(execution)));
     MovedPoints tolerance{options.tolerance_mm.value_or(0), options.tolerance_mm.value_or(0)};
     if (!options.tolerance_mm) {
-        const MovedPoints moved[2] = {moved_points(first, executor), moved_points(second, executor)};
+        const MovedPoints moved[2] = {moved_points(first), moved_points(second)};
         tolerance = {moved[0].contours + moved[1].contours, moved[0].hatches + moved[1].hatches};
     }
-    const std::vector<PlaneContent> contents[2] = {first.contents(), second.contents()};
-    const StackPlanes planes[2] = {planes_of(first, contents[0]), planes_of(second, contents[1])};
+    const StackPlanes planes[2] = {planes_of(first), planes_of(second)};
     result.layers.tolerance_mm = std::max(tolerance.contours, tolerance.hatches);
     result.layers.planes = paired(planes[0], planes[1], options.tolerance_mm);
     result.layers.cut_apart = are_cut_apart(planes[0], planes[1], result.layers.planes);
@@ -317,8 +290,8 @@ FileComparison compare_files(const LayerFile& first, const LayerFile& second,
             for (std::size_t i = 0; i < ones.size(); ++i)
                 compare_ends(ends_of(ones[i], of_first.vectors), ends_of(others[i], of_second.vectors),
                              details);
-            const Layer& one = first.planes()[*plane.first];
-            const Layer& other = second.planes()[*plane.second];
+            const Layer& one = first.planes[*plane.first];
+            const Layer& other = second.planes[*plane.second];
             details.height_distance_mm =
                 std::max(std::abs(one.bottom - other.bottom), std::abs(one.top - other.top));
             details.heights_agree = details.height_distance_mm <= moved_cut(one, first.rounding) +
@@ -331,8 +304,8 @@ FileComparison compare_files(const LayerFile& first, const LayerFile& second,
                            details.hatch_distance_mm == 0 && details.exposed_alike &&
                            details.followed_alike && result.exposures_in_order;
         } else {
-            details.first_hatches = plane.first ? contents[0][*plane.first].hatch_lines : 0;
-            details.second_hatches = plane.second ? contents[1][*plane.second].hatch_lines : 0;
+            details.first_hatches = plane.first ? first.contents[*plane.first].hatch_lines : 0;
+            details.second_hatches = plane.second ? second.contents[*plane.second].hatch_lines : 0;
         }
         progress.add(1);
     });

@@ -2,6 +2,7 @@
 
 #include "lamella/contour/measure.hpp"
 
+#include "core/progress.hpp"
 #include "scan/hatch.hpp"
 
 #include <algorithm>
@@ -14,13 +15,15 @@ namespace lamella {
 namespace {
 
 /// Returns the area within the contours of each part.
-std::vector<double> areas_of(const LayerFile& file, Executor& executor) {
-    std::vector<std::vector<double>> of_planes(file.planes().size());
-    executor.for_chunks(of_planes.size(), 1, [&](std::uint64_t i, std::uint64_t, unsigned) {
-        for (const Layer& polylines : file.plane(i).polylines)
-            of_planes[i].push_back(measure(polylines).area_mm2);
-    });
-    executor.check_cancelled();
+std::vector<double> areas_of(const LayerFile& file, const Execution& execution) {
+    std::vector<std::vector<double>> of_planes(file.planes.size());
+    file.visit(
+        Stage::polygon,
+        [&](std::size_t i, const ScanVectors& plane, unsigned) {
+            for (const Layer& polylines : plane.polylines)
+                of_planes[i].push_back(measure(polylines).area_mm2);
+        },
+        without_progress(execution));
     std::vector<double> areas(file.parts.size());
     for (const std::vector<double>& of_plane : of_planes)
         for (std::size_t part = 0; part < areas.size(); ++part)
@@ -30,7 +33,7 @@ std::vector<double> areas_of(const LayerFile& file, Executor& executor) {
 
 } // namespace
 
-std::vector<ExposureGroup> groups_of(const LayerFile& file, bool all_together, Executor& executor) {
+std::vector<ExposureGroup> groups_of(const LayerFile& file, bool all_together, const Execution& execution) {
     std::vector<double> areas;
     // Compares contours of one part by number or, since some files do not number them, by area.
     const auto lies_outside = [&](std::size_t part, std::size_t other) {
@@ -39,7 +42,7 @@ std::vector<ExposureGroup> groups_of(const LayerFile& file, bool all_together, E
         if (numbers[0] != numbers[1])
             return numbers[0] < numbers[1];
         if (areas.empty())
-            areas = areas_of(file, executor);
+            areas = areas_of(file, execution);
         return areas[part] > areas[other];
     };
     std::map<std::string, ExposureGroup> groups;

@@ -6,8 +6,6 @@
 #include "lamella/read/layer_file.hpp"
 #include "lamella/scan/strategy.hpp"
 
-#include "core/executor.hpp"
-
 #include <cstddef>
 #include <optional>
 #include <span>
@@ -22,9 +20,9 @@ struct ExposureGroup {
 };
 
 /// Returns the exposures of each part, or a single group of all parts. Parts of the file that are not scan
-/// vectors are left out. Parses the layers of a stream only if contours of a part are not numbered.
+/// vectors are left out. Reads the planes only if contours of a part are not numbered.
 [[nodiscard]] std::vector<ExposureGroup> groups_of(const LayerFile& file, bool all_together,
-                                                   Executor& executor);
+                                                   const Execution& execution);
 
 /// The vectors of an exposure on a plane.
 struct PlaneExposure {

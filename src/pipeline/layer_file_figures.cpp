@@ -1,9 +1,5 @@
 #include "lamella/contour/exposure.hpp"
-#include "lamella/core/commit.hpp"
 #include "lamella/pipeline/layer_files.hpp"
-
-#include "core/executor.hpp"
-#include "core/ordered_stage.hpp"
 
 #include <cstddef>
 #include <cstdint>
@@ -21,8 +17,7 @@ struct PlaneFigures {
     std::vector<ScanFigures> exposures;
 };
 
-PlaneFigures measure_plane(const LayerFile& file, std::size_t position) {
-    const ScanVectors plane = file.plane(position);
+PlaneFigures measure_plane(const PlaneSource& file, const ScanVectors& plane) {
     PlaneFigures figures;
     std::optional<Point2> beam;
     for (std::size_t i = 0; i < file.parts.size(); ++i) {
@@ -42,27 +37,22 @@ PlaneFigures measure_plane(const LayerFile& file, std::size_t position) {
 
 } // namespace
 
-FileFigures measure(const LayerFile& file, const Execution& execution) {
-    check(file);
+FileFigures measure(const PlaneSource& file, const Execution& execution) {
     FileFigures all;
-    for (const LayerPart& part : file.parts)
+    for (const PartInfo& part : file.parts)
         if (part.exposure)
             all.exposures.push_back({*part.exposure, {}});
-    const std::size_t planes = file.parts.empty() ? 0 : file.planes().size();
-    Executor executor(file.for_planes(execution));
-    ProgressMeter progress(execution, Stage::polygon, planes);
     // Sums of rounded numbers depend on the order.
-    run_in_order(executor, progress, planes, [&](std::uint64_t position) -> Commit {
-        const auto plane = std::make_shared<const PlaneFigures>(measure_plane(file, position));
+    const PlaneSink add = [&](std::size_t, const ScanVectors& vectors) -> Commit {
+        const auto plane = std::make_shared<const PlaneFigures>(measure_plane(file, vectors));
         return [&all, plane] {
             all.contours.add(plane->contours);
             all.volume_mm3 += plane->volume_mm3;
             for (std::size_t i = 0; i < plane->exposures.size(); ++i)
                 all.exposures[i].figures += plane->exposures[i];
         };
-    });
-    progress.finish();
-    executor.check_cancelled();
+    };
+    file.run(Stage::polygon, add, execution);
     return all;
 }
 

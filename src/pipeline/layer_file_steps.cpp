@@ -4,16 +4,15 @@
 #include "lamella/core/printable.hpp"
 #include "lamella/pipeline/layer_files.hpp"
 
+#include "contour/plane_sums.hpp"
 #include "core/executor.hpp"
-#include "core/progress.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cassert>
-#include <cmath>
 #include <cstddef>
 #include <memory>
+#include <numeric>
 #include <string>
 #include <utility>
 
@@ -22,7 +21,7 @@ namespace lamella {
 namespace {
 
 void check_contours(const LayerFile& file) {
-    for (const LayerPart& part : file.parts)
+    for (const PartInfo& part : file.parts)
         if (part.exposure)
             throw Error(ErrorKind::usage,
                         fmt::format("{}: holds scan vectors ({}); steps such as `fill` change contours only: "
@@ -33,7 +32,7 @@ void check_contours(const LayerFile& file) {
 /// Returns the names of the parts for error messages.
 std::vector<std::string> names_of(const LayerFile& file) {
     std::vector<std::string> names;
-    for (const LayerPart& part : file.parts)
+    for (const PartInfo& part : file.parts)
         names.push_back(file.parts.size() == 1
                             ? file.path
                             : fmt::format("{}, part \"{}\"", file.path, excerpt(part.label)));
@@ -68,74 +67,12 @@ struct PlaneSteps {
     }
 };
 
-/// Properties of several planes after the steps.
-class PlaneSums {
-  public:
-    explicit PlaneSums(std::size_t parts) : boxes_(parts), hatch_lines_(parts) {}
-
-    /// Adds a plane, and returns what it holds.
-    PlaneContent add(const PlaneSteps::Plane& plane) {
-        PlaneContent content;
-        for (std::size_t i = 0; i < boxes_.size(); ++i) {
-            const Layer& layer = plane.vectors.polylines[i];
-            const PointArray& hatches = plane.vectors.hatches[i];
-            add_points(layer.points.span(), boxes_[i], largest_);
-            add_points(hatches.span(), boxes_[i], largest_of_hatches_);
-            contours += layer.contours();
-            content.contours = content.contours || layer.contours() > 0;
-            content.hatch_lines += hatches.size() / 2;
-            hatch_lines_[i] += hatches.size() / 2;
-        }
-        hatch_lines_dropped += plane.hatch_lines_dropped;
-        return content;
-    }
-    void add(const PlaneSums& other) {
-        for (std::size_t i = 0; i < boxes_.size(); ++i) {
-            boxes_[i].add(other.boxes_[i]);
-            hatch_lines_[i] += other.hatch_lines_[i];
-        }
-        largest_ = std::max(largest_, other.largest_);
-        largest_of_hatches_ = std::max(largest_of_hatches_, other.largest_of_hatches_);
-        contours += other.contours;
-        hatch_lines_dropped += other.hatch_lines_dropped;
-    }
-    /// Puts the properties into the stream, whose planes are known.
-    void put(LayerStream& stream) const {
-        stream.boxes = boxes_;
-        for (Box3& box : stream.boxes)
-            if (!box.empty()) {
-                box.min.z = stream.planes.front().bottom;
-                box.max.z = stream.planes.back().top;
-            }
-        stream.hatch_lines = hatch_lines_;
-        stream.largest_coordinate = largest_;
-        stream.largest_hatch_coordinate = largest_of_hatches_;
-    }
-
-    std::uint64_t contours = 0;
-    std::uint64_t hatch_lines_dropped = 0;
-
-  private:
-    static void add_points(std::span<const Point2> points, Box3& box, double& largest) {
-        for (const Point2& p : points) {
-            box.add(Point3{p.x, p.y, 0});
-            largest = std::max({largest, std::abs(p.x), std::abs(p.y)});
-        }
-    }
-
-    std::vector<Box3> boxes_; ///< at a height of 0
-    std::vector<std::uint64_t> hatch_lines_;
-    double largest_ = 0;
-    double largest_of_hatches_ = 0;
-};
-
-void replace(LayerFile& file, std::size_t position, ScanVectors&& vectors) {
-    for (std::size_t i = 0; i < file.parts.size(); ++i) {
-        LayerPart& part = file.parts[i];
-        part.layers[position] = std::move(vectors.polylines[i]);
-        if (!part.hatches.empty())
-            part.hatches[position] = std::move(vectors.hatches[i]);
-    }
+/// Returns whether the planes would take at most half of the memory that there is.
+bool fits_well(const PlaneSource& source) {
+    std::uint64_t bytes = source.planes.size() * source.parts.size() * sizeof(Layer);
+    for (const PlaneContent& content : source.contents)
+        bytes += (content.points + 2 * content.hatch_lines) * sizeof(Point2);
+    return source.contents.size() == source.planes.size() && bytes <= source.spare_bytes / 2;
 }
 
 } // namespace
@@ -143,40 +80,42 @@ void replace(LayerFile& file, std::size_t position, ScanVectors&& vectors) {
 SteppedFile take_steps(const LayerSteps& steps, LayerFile file, const Execution& execution,
                        std::uint64_t max_memory) {
     check_steps(steps);
-    check(file);
-    const std::size_t planes = file.parts.empty() ? 0 : file.planes().size();
+    const std::size_t planes = file.planes.size();
     SteppedFile result{.file = std::move(file), .planes = std::vector<LayerChanges>(planes)};
     if (!steps.any())
         return result;
     check_contours(result.file);
-    Executor executor(result.file.for_planes(execution));
-    const auto stepper = std::make_shared<const PlaneSteps>(
-        PlaneSteps{.steps = steps,
-                   .limits = layer_limits(execution, max_memory, executor.workers()),
-                   .names = names_of(result.file)});
+    const unsigned threads = thread_count(result.file.for_planes(execution));
+    const auto stepper =
+        std::make_shared<const PlaneSteps>(PlaneSteps{.steps = steps,
+                                                      .limits = layer_limits(execution, max_memory, threads),
+                                                      .names = names_of(result.file)});
     LayerFindingSearch search(planes, LayerUse::kept, result.file.rounding,
                               steps.offset_mm != 0 ? InversionSearch::full : InversionSearch::quick,
                               execution, max_memory);
-    std::vector<PlaneSums> sums(executor.workers(), PlaneSums(result.file.parts.size()));
+    std::vector<PlaneSums> sums(threads, PlaneSums(result.file.parts.size()));
+    std::vector<std::uint64_t> contours(threads);
+    std::vector<std::uint64_t> hatch_lines_dropped(threads);
     std::vector<PlaneContent> contents(planes);
-    ProgressMeter progress(execution, Stage::polygon, planes);
-    executor.for_chunks(planes, 1, [&](std::uint64_t i, std::uint64_t, unsigned worker) {
-        ScanVectors before = result.file.plane(i);
+    std::vector<ScanVectors> kept(fits_well(result.file) ? planes : 0);
+    const PlaneVisitor take_steps_on = [&](std::size_t i, ScanVectors before, unsigned worker) {
         if (steps.fill == FillRule::none)
             search.look_at(i, result.file, before);
         PlaneSteps::Plane plane = stepper->take(std::move(before));
         result.planes[i] = plane.changes;
-        contents[i] = sums[worker].add(plane);
-        if (!result.file.stream)
-            replace(result.file, i, std::move(plane.vectors));
-        progress.add(1);
-    });
-    progress.finish();
-    executor.check_cancelled();
+        contents[i] = sums[worker].add(plane.vectors);
+        for (const Layer& layer : plane.vectors.polylines)
+            contours[worker] += layer.contours();
+        hatch_lines_dropped[worker] += plane.hatch_lines_dropped;
+        if (!kept.empty())
+            kept[i] = std::move(plane.vectors);
+    };
+    result.file.visit(Stage::polygon, take_steps_on, execution);
     for (std::size_t worker = 1; worker < sums.size(); ++worker)
         sums.front().add(sums[worker]);
-    result.contours = sums.front().contours;
-    result.hatch_lines_dropped = sums.front().hatch_lines_dropped;
+    result.contours = std::accumulate(contours.begin(), contours.end(), std::uint64_t{0});
+    result.hatch_lines_dropped =
+        std::accumulate(hatch_lines_dropped.begin(), hatch_lines_dropped.end(), std::uint64_t{0});
     result.findings = search.findings();
     if (result.hatch_lines_dropped > 0)
         result.findings.add({.kind = FindingKind::outdated_hatch_lines, .count = result.hatch_lines_dropped});
@@ -184,18 +123,14 @@ SteppedFile take_steps(const LayerSteps& steps, LayerFile file, const Execution&
     for (const LayerChanges& plane : result.planes)
         all += plane;
     add_nothing_left(result.findings, all, planes, result.contours);
-    if (const std::shared_ptr<const LayerStream> before = result.file.stream) {
-        LayerStream stream{.planes = before->planes,
-                           .contents = std::move(contents),
-                           .bytes = before->bytes + planes * (sizeof(Layer) + sizeof(PlaneContent)),
-                           .plane_bytes = before->plane_bytes,
-                           .spare_bytes = before->spare_bytes,
-                           .parse = [before, stepper](std::size_t position) {
-                               return stepper->take(before->parse(position)).vectors;
-                           }};
-        sums.front().put(stream);
-        result.file.stream = std::make_shared<const LayerStream>(std::move(stream));
-    }
+    sums.front().put(result.file);
+    result.file.contents = std::move(contents);
+    if (!kept.empty())
+        keep_planes(result.file, std::move(kept));
+    else
+        result.file.make = [before = std::move(result.file.make), stepper](std::size_t position) {
+            return stepper->take(before(position)).vectors;
+        };
     return result;
 }
 

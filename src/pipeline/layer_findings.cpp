@@ -3,6 +3,7 @@
 #include "lamella/contour/open_gaps.hpp"
 
 #include "core/executor.hpp"
+#include "core/progress.hpp"
 #include "slicing/near_faces.hpp"
 
 namespace lamella {
@@ -64,42 +65,20 @@ void LayerFindingSearch::look_at(std::size_t position, std::size_t part, const L
               .amount = inverted.area_mm2});
 }
 
-void LayerFindingSearch::look_at(std::size_t position, const LayerFile& file, const ScanVectors& plane) {
-    for (std::size_t i = 0; i < file.parts.size(); ++i)
-        if (!file.parts[i].exposure)
+void LayerFindingSearch::look_at(std::size_t position, const PlaneSource& source, const ScanVectors& plane) {
+    for (std::size_t i = 0; i < source.parts.size(); ++i)
+        if (!source.parts[i].exposure)
             look_at(position, i, plane.polylines[i]);
 }
 
-namespace {
-
-/// Searches all planes; `look_at(search, position)` passes the layers of a plane.
-template <class LookAt>
-Findings searched(LayerFindingSearch&& all, std::size_t planes, const Execution& execution,
-                  const LookAt& look_at) {
-    Executor executor(execution);
-    executor.for_chunks(planes, 1, [&](std::uint64_t i, std::uint64_t, unsigned) { look_at(all, i); });
-    executor.check_cancelled();
-    return all.findings();
-}
-
-} // namespace
-
-Findings layer_findings(std::span<const LayerStack> parts, LayerUse use, const Rounding& rounding,
-                        InversionSearch search, const Execution& execution, std::uint64_t max_memory) {
-    const std::size_t planes = parts.empty() ? 0 : parts.front().size();
-    return searched(LayerFindingSearch(planes, use, rounding, search, execution, max_memory), planes,
-                    execution, [&](LayerFindingSearch& all, std::size_t i) {
-                        for (std::size_t part = 0; part < parts.size(); ++part)
-                            all.look_at(i, part, parts[part][i]);
-                    });
-}
-
-Findings layer_findings(const LayerFile& file, LayerUse use, InversionSearch search,
+Findings layer_findings(const PlaneSource& source, LayerUse use, InversionSearch search,
                         const Execution& execution, std::uint64_t max_memory) {
-    const std::size_t planes = file.planes().size();
-    return searched(LayerFindingSearch(planes, use, file.rounding, search, execution, max_memory), planes,
-                    file.for_planes(execution),
-                    [&](LayerFindingSearch& all, std::size_t i) { all.look_at(i, file, file.plane(i)); });
+    LayerFindingSearch all(source.planes.size(), use, source.rounding, search, execution, max_memory);
+    source.visit(
+        Stage::polygon,
+        [&](std::size_t i, const ScanVectors& plane, unsigned) { all.look_at(i, source, plane); },
+        without_progress(execution));
+    return all.findings();
 }
 
 } // namespace lamella

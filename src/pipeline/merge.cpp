@@ -62,14 +62,14 @@ ShardFile look_at(const std::string& path, const LayerReadOptions& reading, cons
                                                   "input and pipes cannot be; save it to a file first",
                                                   path == "-" ? "standard input" : path));
     const LayerFile file = read_layers(path, reading, execution);
-    const LayerStack& layers = file.planes();
+    const LayerStack& layers = file.planes;
     if (layers.empty())
         throw Error(ErrorKind::input, fmt::format("{}: holds no layers", path));
     ShardFile shard{.path = path,
                     .format = file.format,
                     .units_mm = file.units_mm,
                     .rule = file.rule,
-                    .parts = {},
+                    .parts = file.parts,
                     .layers = layers.size(),
                     .bottom = layers.front().bottom,
                     .top = layers.back().top,
@@ -77,12 +77,6 @@ ShardFile look_at(const std::string& path, const LayerReadOptions& reading, cons
                     .rounded_heights =
                         moved_cut(layers.front(), file.rounding) + moved_cut(layers.back(), file.rounding),
                     .warnings = file.warnings};
-    for (std::size_t i = 0; i < file.parts.size(); ++i) {
-        const LayerPart& part = file.parts[i];
-        shard.parts.push_back(
-            {part.label, file.stream ? file.stream->boxes[i] : part_box(part.layers, part.hatches, execution),
-             part.exposure, part.support});
-    }
     shard.findings = layer_findings(file, LayerUse::kept, InversionSearch::quick, execution);
     return shard;
 }
@@ -409,9 +403,9 @@ std::vector<PartInfo> parts_of(const std::vector<ShardFile>& shards) {
 
 /// Returns the layer of each part on a plane of a file, with its hatch lines. The layer is empty if the file
 /// does not list the part.
-ScanVectors plane_of(const LayerFile& file, std::size_t plane, const std::vector<PartInfo>& parts) {
-    const Layer& any = file.planes()[plane];
-    ScanVectors of_file = file.plane(plane);
+ScanVectors plane_of(const LayerFile& file, std::size_t plane, ScanVectors of_file,
+                     const std::vector<PartInfo>& parts) {
+    const Layer& any = file.planes[plane];
     ScanVectors vectors;
     std::size_t next = 0;
     for (const PartInfo& part : parts) {
@@ -452,19 +446,18 @@ void write_anew(const std::vector<ShardFile>& shards, const std::string& output,
         // At the boundary of two files the rounding errors of two heights and of a thickness add up.
         const double rounded = file.rounding.single_precision ? 2 * file.rounding.step_at(top) : 0;
         // Formats without indices count each file from 0.
-        const LayerStack& known = file.planes();
+        const LayerStack& known = file.planes;
         const std::uint64_t moved = next > known.front().index ? next - known.front().index : 0;
-        const auto moved_plane = [&](std::size_t i) {
-            ScanVectors plane = plane_of(file, i, parts);
+        const PlaneSink write = [&](std::size_t i, ScanVectors of_file) {
+            ScanVectors plane = plane_of(file, i, std::move(of_file), parts);
             for (Layer& layer : plane.polylines) {
                 layer.index += moved;
                 if (i == 0 && std::abs(layer.bottom - top) <= rounded)
                     layer.bottom = top;
             }
-            return plane;
+            return writer->prepare(plane);
         };
-        write_planes(*writer, known.size(), moved_plane,
-                     without_progress(file.for_planes(execution))); // a stage must not repeat for each file
+        file.run(Stage::write, write, without_progress(execution)); // a stage must not repeat for each file
         top = known.back().top;
         next = known.back().index + moved + 1;
     }
@@ -483,7 +476,7 @@ MergeResult merge_layer_files(std::span<const std::string> paths, const std::str
     const LayerFormat& to = layer_format(options.format, output);
     const LayerWriteOptions& writing = options.writing;
     LayerReadOptions reading = options.reading;
-    reading.layers = LayersKept::if_faster;
+    reading.kept = KeptPlanes::if_faster;
     const std::vector<ShardFile> shards = look_at_all(paths, reading, execution);
     check_output(output, shards, reading, execution);
     MergeResult result{.format = shards.front().format,

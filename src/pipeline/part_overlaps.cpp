@@ -3,8 +3,8 @@
 #include "lamella/contour/measure.hpp"
 #include "lamella/polygon/boolean.hpp"
 
-#include "core/naming.hpp"
 #include "contour/box2.hpp"
+#include "core/naming.hpp"
 
 #include <algorithm>
 #include <numeric>

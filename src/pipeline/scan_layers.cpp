@@ -4,11 +4,9 @@
 #include "lamella/core/printable.hpp"
 
 #include "core/executor.hpp"
-#include "core/ordered_stage.hpp"
 #include "core/stopwatch.hpp"
 #include "pipeline/job_output.hpp"
 #include "pipeline/layer_processor.hpp"
-#include "write/ordered_writer.hpp"
 
 #include <fmt/format.h>
 
@@ -24,7 +22,8 @@ LayerFileInfo with_exposures(const LayerFileInfo& info, const ScanStrategy& stra
     for (const PartInfo& part : info.parts)
         for (const Exposure& exposure :
              part.support ? support_exposures(strategy, part.label) : exposures(strategy, part.label))
-            exposed.parts.push_back({exposure.label(), part.box, exposure, part.support});
+            exposed.parts.push_back(
+                {.label = exposure.label(), .box = part.box, .exposure = exposure, .support = part.support});
     return exposed;
 }
 
@@ -41,76 +40,47 @@ std::vector<std::string> names_of(const LayerFileInfo& info, const std::string& 
     return names;
 }
 
-/// Scans planes. `heights` has a layer of each plane; `layers_on(plane)` returns the layers of all parts.
-template <class LayersOn>
-FileResult scan_planes(const std::string& path, const LayerFormat& format, std::span<const Layer> heights,
-                       const LayersOn& layers_on, const Rounding& rounding, const LayerFileInfo& info,
+} // namespace
+
+FileResult scan_layers(const std::string& path, const LayerFormat& format, const PlaneSource& source,
                        const ScanStrategy& strategy, const LayerWriteOptions& options,
-                       const Execution& execution, std::uint64_t max_memory, const std::string& name) {
+                       const Execution& execution, std::uint64_t max_memory) {
     const Stopwatch total;
     check_strategy(strategy);
-    Executor executor(execution);
+    const LayerFileInfo info = info_of(source);
     FileResult result;
-    result.threads = executor.workers();
+    result.threads = thread_count(source.for_planes(execution));
     const OutputFiles files{.path = path, .format = &format, .write = options};
-    LayerJob job{.names = names_of(info, name),
-                 .rounding = rounding,
+    LayerJob job{.names = names_of(info, source.path),
+                 .rounding = source.rounding,
                  .written = files.rounding(),
                  .of_mesh = false,
                  .scan = strategy,
                  .statistics = true,
-                 .limits = layer_limits(execution, max_memory, executor.workers())};
+                 .limits = layer_limits(execution, max_memory, result.threads)};
     for (const PartInfo& part : info.parts) {
         job.supports.push_back(part.support);
         job.objects.push_back(static_cast<std::uint32_t>(job.objects.size()));
         result.parts.push_back({.label = part.label, .box = part.box});
     }
     std::vector<PlannedLayer> planes;
-    for (const Layer& layer : heights)
+    for (const Layer& layer : source.planes)
         planes.push_back({layer.index, layer.z, layer.bottom, layer.top});
     const PlaneRange all{0, static_cast<std::uint32_t>(planes.size())};
     JobOutput output(files, with_exposures(info, strategy), all);
     LayerProcessor processor(std::move(job), planes, all, all, output);
-
-    ProgressMeter progress(execution, Stage::write, all.size());
-    run_in_order(executor, progress, all.size(), [&](std::uint64_t plane) {
-        return processor.prepare(static_cast<std::uint32_t>(plane), layers_on(plane));
-    });
-    progress.finish();
-
+    const PlaneSink process = [&](std::size_t plane, const ScanVectors& layers) {
+        return processor.prepare(static_cast<std::uint32_t>(plane), layers.polylines);
+    };
+    source.run(Stage::write, process, execution);
     processor.set_times(result.seconds);
     processor.totals().store_in(result);
     if (const Finding* found = result.findings.first_warning(); options.strict && found != nullptr)
-        throw Error(ErrorKind::defect, fmt::format("{}: {}", name.empty() ? path : name, found->text()));
+        throw Error(ErrorKind::defect,
+                    fmt::format("{}: {}", source.path.empty() ? path : source.path, found->text()));
     output.finish_file(result);
     result.seconds.total = total.seconds();
     return result;
-}
-
-} // namespace
-
-FileResult scan_layers(const std::string& path, const LayerFormat& format, std::span<const LayerStack> parts,
-                       const Rounding& rounding, const LayerFileInfo& info, const ScanStrategy& strategy,
-                       const LayerWriteOptions& options, const Execution& execution, std::uint64_t max_memory,
-                       const std::string& name) {
-    check_same_planes(parts, info);
-    const auto layers_on = [&](std::size_t plane) {
-        std::vector<Layer> layers;
-        for (const LayerStack& part : parts)
-            layers.push_back(part[plane]);
-        return layers;
-    };
-    return scan_planes(path, format, parts.empty() ? std::span<const Layer>() : parts.front(), layers_on,
-                       rounding, info, strategy, options, execution, max_memory, name);
-}
-
-FileResult scan_layers(const std::string& path, const LayerFormat& format, const LayerFile& file,
-                       const LayerFileInfo& info, const ScanStrategy& strategy,
-                       const LayerWriteOptions& options, const Execution& execution,
-                       std::uint64_t max_memory) {
-    return scan_planes(
-        path, format, file.planes(), [&](std::size_t plane) { return file.plane(plane).polylines; },
-        file.rounding, info, strategy, options, file.for_planes(execution), max_memory, file.path);
 }
 
 } // namespace lamella

@@ -212,31 +212,16 @@ PlaneRule place_cuts(LayerStack& layers, SliceAt at) {
 }
 
 PlaneRule place_cuts(LayerFile& file, SliceAt at) {
-    PlaneRule rule = file.rule;
-    const bool guessed = at == SliceAt::top && !file.guess.empty();
-    const auto place = [&](LayerStack& layers) {
-        for (std::size_t i = guessed ? layers.size() : 0; i-- > 0;) {
-            Layer& layer = layers[i];
-            const double below = i > 0 ? layers[i - 1].bottom : 2 * layer.bottom - layer.top;
-            layer.top = std::exchange(layer.bottom, below);
+    if (at == SliceAt::top && !file.guess.empty()) {
+        LayerStack& planes = file.planes;
+        for (std::size_t i = planes.size(); i-- > 0;) {
+            const double below = i > 0 ? planes[i - 1].bottom : 2 * planes[i].bottom - planes[i].top;
+            planes[i].top = std::exchange(planes[i].bottom, below);
         }
-        rule = place_cuts(layers, at);
-    };
-    for (LayerPart& part : file.parts)
-        place(part.layers);
-    if (file.stream) {
-        LayerStream moved = *file.stream;
-        place(moved.planes);
-        moved.parse = [stream = file.stream](std::size_t position) {
-            return stream->parse(position);
-        };
-        file.stream = std::make_shared<const LayerStream>(std::move(moved));
-    }
-    if (guessed) {
         std::erase(file.warnings, file.guess);
         file.guess.clear();
     }
-    return rule;
+    return place_cuts(file.planes, at);
 }
 
 namespace {
@@ -326,7 +311,7 @@ Verification verify_file(const LayerFile& file, const VerifyOptions& options, co
         ScanVectors plane = file.plane(i);
         return plane.exposures() == 1 ? std::move(plane.polylines.front()) : merged(plane.polylines);
     };
-    return verify_planes(file.planes(), layer_at, options, execution);
+    return verify_planes(file.planes, layer_at, options, execution);
 }
 
 } // namespace lamella

@@ -184,12 +184,8 @@ std::array<KindOfFinding, 7> kinds_of_findings(bool strategy) {
 
 VectorVerification verify_vectors(const LayerFile& file, const VerifyOptions& options,
                                   const Execution& execution) {
-    check(file);
-    for (const LayerPart& part : file.parts)
-        for (const Layer& layer : part.layers)
-            check(layer);
     Executor executor(file.for_planes(execution));
-    const std::vector<ExposureGroup> groups = groups_of(file, options.mesh.has_value(), executor);
+    const std::vector<ExposureGroup> groups = groups_of(file, options.mesh.has_value(), execution);
     VectorVerification result;
     const auto check_number = [&] {
         result.none = options.strategy && result.contour_vectors + result.hatch_vectors == 0;
@@ -200,16 +196,9 @@ VectorVerification verify_vectors(const LayerFile& file, const VerifyOptions& op
         check_number();
         return result;
     }
-    const LayerStack& planes = file.planes();
+    const LayerStack& planes = file.planes;
     result.layers = planes.size();
-    double largest = 0;
-    if (file.stream)
-        largest = std::max(file.stream->largest_coordinate, file.stream->largest_hatch_coordinate);
-    for (const ExposureGroup& group : groups)
-        for (const std::size_t part : group.exposures)
-            for (std::size_t i = 0; i < file.parts[part].layers.size(); ++i)
-                largest = std::max({largest, largest_coordinate(file.parts[part].layers[i].points.span()),
-                                    largest_coordinate(file.parts[part].hatches_of(i))});
+    const double largest = std::max(file.largest_coordinate, file.largest_hatch_coordinate);
     // Tolerance of ends of lines and points of contours, each moved along both axes, and of arithmetic.
     const double rounding = std::sqrt(2.0) * options.granted().step_at(largest) + 0x1p-34 * largest;
 

@@ -47,7 +47,7 @@ std::variant<MeshFile, LayerFile> read_unpacked(const ByteSource& source, const 
         }
     try {
         return read_unpacked_layers(
-            readable, {.max_memory = options.max_memory, .held = options.held, .layers = options.layers},
+            readable, {.max_memory = options.max_memory, .held = options.held, .kept = options.kept},
             execution);
     } catch (const NoLayers&) {
         // The package contains meshes only. If its layers are damaged its meshes are not read, because they

@@ -12,7 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
+#include <memory>
 #include <optional>
 #include <utility>
 
@@ -28,7 +28,7 @@ std::vector<VectorKind> kinds_held(std::span<const RawLayer> layers, std::size_t
     std::vector<bool> contours(parts);
     std::vector<bool> hatches(parts);
     for (const RawLayer& layer : layers) {
-        for (const RawLayer::Run& run : layer.runs())
+        for (const RawLayer::Run& run : layer.runs)
             (run.kind == RawLayer::Run::Kind::hatch ? hatches : contours)[run.part] = true;
     }
     std::vector<VectorKind> kinds;
@@ -50,7 +50,7 @@ std::string name_of(const BeamSettings& beam) {
 }
 
 /// Gives a part the exposure that its label specifies, or otherwise that of its settings.
-void expose(LayerPart& part, const CommonLayerPart& of, std::optional<Exposure> labelled) {
+void expose(PartInfo& part, const CommonLayerPart& of, std::optional<Exposure> labelled) {
     part.exposure = std::move(labelled);
     if (!of.beam.any())
         return;
@@ -68,6 +68,49 @@ void expose(LayerPart& part, const CommonLayerPart& of, std::optional<Exposure> 
     set.focus_mm = of.beam.focus_mm.value_or(set.focus_mm);
 }
 
+class CommonLayerFile {
+  public:
+    using Piece = CommonLayerGeometry;
+
+    CommonLayerFile(std::string_view bytes, const std::string& name, ReadLimits& limits)
+        : bytes_(bytes), name_(name), header_(read_common_layer_header(bytes, name, limits)),
+          all_(header_, name_, limits, {}) {}
+
+    [[nodiscard]] const CommonLayerHeader& header() const { return header_; }
+    [[nodiscard]] CommonLayerGeometry& geometry() { return all_; }
+
+    [[nodiscard]] PieceBegins begins(Executor& executor) {
+        if (header_.binary)
+            return binary_pieces(bytes_, header_);
+        text_.emplace(ascii_pieces(bytes_, name_, header_, executor));
+        return text_->begins();
+    }
+    [[nodiscard]] std::size_t end() const { return bytes_.size(); }
+    [[nodiscard]] CommonLayerGeometry parse(std::size_t begin, std::size_t limit,
+                                            const Reading& reading) const {
+        return header_.binary ? read_binary_piece(bytes_, name_, header_, begin, limit, reading)
+                              : read_ascii_piece(bytes_, name_, header_, begin, limit,
+                                                 reading.again ? 1 : text_->line(begin), reading);
+    }
+    void append(CommonLayerGeometry&& piece, ReadLimits& /*limits*/) { all_.append(std::move(piece)); }
+    [[nodiscard]] RawLayer layer(CommonLayerGeometry&& piece) const {
+        return all_.layer_again(std::move(piece), header_, parts_);
+    }
+
+    /// Puts the parts into `file`, and returns their keys.
+    const std::vector<CommonLayerPart>& number_parts(LayerFile& file) {
+        return parts_ = all_.number_parts(header_, file);
+    }
+
+  private:
+    std::string_view bytes_;
+    std::string name_;
+    CommonLayerHeader header_;
+    std::optional<TextPieces> text_; ///< of an ASCII file
+    CommonLayerGeometry all_;
+    std::vector<CommonLayerPart> parts_;
+};
+
 } // namespace
 
 bool is_common_layer(std::string_view bytes) {
@@ -79,19 +122,16 @@ bool is_common_layer(std::string_view bytes) {
 CommonLayerContent read_common_layer_content(std::string_view bytes, const std::string& name,
                                              const ExposureOfPart& exposure_of, ReadLimits& limits,
                                              const Execution& execution) {
-    const CommonLayerHeader header = read_common_layer_header(bytes, name, limits);
-    CommonLayerContent content{
-        .file = {.path = name, .format = header.binary ? "cli" : "cli-ascii", .units_mm = header.units_mm},
-        .layers = {},
-        .bytes = bytes.size()};
+    const auto opened = std::make_shared<CommonLayerFile>(bytes, name, limits);
+    const CommonLayerHeader& header = opened->header();
+    CommonLayerContent content{.file = layer_file(name, header.binary ? "cli" : "cli-ascii", header.units_mm),
+                               .layers = {},
+                               .parse = {},
+                               .bytes = bytes.size()};
     LayerFile& file = content.file;
-    Executor executor(execution);
-    ProgressMeter progress(execution, Stage::read, bytes.size());
-    CommonLayerGeometry geometry = header.binary
-                                       ? read_binary_geometry(bytes, name, header, limits, executor, progress)
-                                       : read_ascii_geometry(bytes, name, header, limits, executor, progress);
-    progress.finish();
-    const std::uint64_t found = geometry.layers().size();
+    read_layers_of(*opened, limits, execution, bytes.size());
+    CommonLayerGeometry& geometry = opened->geometry();
+    const std::uint64_t found = geometry.layers.size();
     if (found == 0)
         throw Error(ErrorKind::input,
                     fmt::format("{}, byte {}: found no layer; a slice file must have at least one", name,
@@ -102,19 +142,9 @@ CommonLayerContent read_common_layer_content(std::string_view bytes, const std::
             fmt::format("the header announces {} layers; the file has {}", *header.layers, found));
     file.rounding = geometry.rounding(header.binary);
     geometry.append_to(file.warnings);
-    const std::vector<CommonLayerPart> parts = geometry.number_parts(header, file);
-    content.layers = std::move(geometry.layers());
-    if (!limits.in_memory())
-        content.parse = [bytes, name, header, beams = std::move(geometry.beams()),
-                         parts](std::size_t begin, ReadLimits& counted) {
-            const auto later =
-                std::upper_bound(beams.begin(), beams.end(), begin,
-                                 [](std::size_t at, const LayerBeam& beam) { return at < beam.begin; });
-            return CommonLayerGeometry::layer_again(
-                header.binary ? read_binary_layer(bytes, name, header, begin, counted)
-                              : read_ascii_layer(bytes, name, header, begin, counted),
-                header, later == beams.begin() ? BeamSettings{} : std::prev(later)->beam, parts);
-        };
+    const std::vector<CommonLayerPart>& parts = opened->number_parts(file);
+    content.layers = std::move(geometry.layers);
+    content.parse = parsing_again<CommonLayerFile>(opened);
     const std::vector<VectorKind> held = kinds_held(content.layers, parts.size());
     for (std::size_t i = 0; i < parts.size(); ++i)
         expose(file.parts[i], parts[i], exposure_of(file.parts[i].label, held[i]));

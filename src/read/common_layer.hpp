@@ -21,7 +21,7 @@ namespace lamella {
 struct CommonLayerContent {
     LayerFile file;               ///< its parts have no layers yet
     std::vector<RawLayer> layers; ///< ascending, at least one
-    ParseLayer parse = {};        ///< set unless layers are kept in memory
+    ParseLayer parse;
     std::uint64_t bytes = 0;
     double lowest = 0;      ///< height of the bottom of the part
     bool on_bottom = false; ///< the first layer is at `lowest` and has contours

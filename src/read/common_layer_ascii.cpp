@@ -2,7 +2,6 @@
 #include "core/executor.hpp"
 #include "read/common_layer_geometry.hpp"
 #include "read/common_layer_text.hpp"
-#include "read/layer_pieces.hpp"
 
 #include <fmt/format.h>
 
@@ -43,36 +42,36 @@ CommonLayerDirection take_direction(CommonLayerText& text) {
     return *known;
 }
 
-struct AsciiPiece {
-    CommonLayerGeometry geometry;
-    std::size_t end = 0;
-};
+} // namespace
 
-/// Reads commands from `begin`, on line `line`, up to the first layer at or after `limit`.
-AsciiPiece read_piece(std::string_view bytes, const std::string& name, const CommonLayerHeader& header,
-                      std::size_t begin, std::size_t limit, std::uint64_t line, ReadLimits& limits,
-                      const Executor& executor, ProgressMeter& progress) {
-    CommonLayerGeometry geometry(header, name, limits);
+TextPieces ascii_pieces(std::string_view bytes, const std::string& name, const CommonLayerHeader& header,
+                        Executor& executor) {
+    CommonLayerText text(bytes, header.end, name);
+    text.skip_blanks();
+    if (!text.take("$$GEOMETRYSTART"))
+        text.fail(text.done() ? "the end of the file"
+                              : fmt::format("'{}'", printable(text.rest().substr(0, 20), 40)),
+                  "$$GEOMETRYSTART must follow the header");
+    return find_text_pieces(bytes, text.at(), "$$LAYER", executor);
+}
+
+CommonLayerGeometry read_ascii_piece(std::string_view bytes, const std::string& name,
+                                     const CommonLayerHeader& header, std::size_t begin, std::size_t limit,
+                                     std::uint64_t line, const Reading& reading) {
+    CommonLayerGeometry geometry(header, name, reading.limits);
     CommonLayerText text(bytes, begin, name);
-    std::size_t reported = begin;
+    ReadPosition position(reading, begin);
     std::size_t layer_at = begin; // offset of the last layer
     std::uint64_t layer_line = line;
     const auto line_of_command = [&](std::size_t command_at) {
         return layer_line + line_at(bytes.substr(layer_at), command_at - layer_at) - 1;
     };
-    const auto report_progress = [&] {
-        if (text.at() - reported <= (1U << 20))
-            return;
-        executor.check_cancelled();
-        progress.add(text.at() - reported);
-        reported = text.at();
-    };
-    std::size_t end = bytes.size();
+    geometry.end = bytes.size();
     for (;;) {
         text.skip_blanks();
         if (text.done())
             text.fail("the end of the file", "the geometry must end with $$GEOMETRYEND");
-        report_progress();
+        position.reached(text.at());
         if (!text.take("$$"))
             text.fail(fmt::format("'{}'", printable(text.rest().substr(0, 20), 40)),
                       "a command must start with $$");
@@ -82,7 +81,7 @@ AsciiPiece read_piece(std::string_view bytes, const std::string& name, const Com
             break;
         if (command == "LAYER") {
             if (command_at >= limit) {
-                end = command_at;
+                geometry.end = command_at;
                 break;
             }
             text.expect('/', "the layer's height");
@@ -116,7 +115,7 @@ AsciiPiece read_piece(std::string_view bytes, const std::string& name, const Com
             const auto number_of_points = static_cast<std::uint64_t>(points_each * count);
             std::vector<Point2>& points = geometry.expect_points(hatches, number_of_points, location);
             for (std::uint64_t i = 0; i < number_of_points; ++i) {
-                report_progress();
+                position.reached(text.at());
                 std::array<double, 2> p{};
                 for (double& value : p) {
                     text.expect(',', "the next coordinate");
@@ -141,40 +140,8 @@ AsciiPiece read_piece(std::string_view bytes, const std::string& name, const Com
             text.skip_to_command();
         }
     }
-    progress.add(end - reported);
-    geometry.end_piece();
-    return {std::move(geometry), end};
-}
-
-} // namespace
-
-CommonLayerGeometry read_ascii_geometry(std::string_view bytes, const std::string& name,
-                                        const CommonLayerHeader& header, ReadLimits& limits,
-                                        Executor& executor, ProgressMeter& progress) {
-    CommonLayerText text(bytes, header.end, name);
-    text.skip_blanks();
-    if (!text.take("$$GEOMETRYSTART"))
-        text.fail(text.done() ? "the end of the file"
-                              : fmt::format("'{}'", printable(text.rest().substr(0, 20), 40)),
-                  "$$GEOMETRYSTART must follow the header");
-    const TextPieces pieces = find_text_pieces(bytes, text.at(), "$$LAYER", executor);
-    CommonLayerGeometry geometry(header, name, limits, {});
-    read_pieces(
-        pieces.begins(), bytes.size(), executor,
-        [&](std::size_t from, std::size_t limit) {
-            return read_piece(bytes, name, header, from, limit, pieces.line(from), limits, executor,
-                              progress);
-        },
-        [&](AsciiPiece&& piece) { geometry.append(std::move(piece.geometry)); });
+    position.end(geometry.end);
     return geometry;
-}
-
-CommonLayerGeometry read_ascii_layer(std::string_view bytes, const std::string& name,
-                                     const CommonLayerHeader& header, std::size_t begin, ReadLimits& limits) {
-    const Execution silent{.threads = 1};
-    const Executor executor(silent);
-    ProgressMeter progress(silent, Stage::read, bytes.size());
-    return read_piece(bytes, name, header, begin, begin + 1, 1, limits, executor, progress).geometry;
 }
 
 } // namespace lamella

@@ -3,7 +3,6 @@
 #include "container/common_layer_format.hpp"
 #include "core/executor.hpp"
 #include "read/common_layer_geometry.hpp"
-#include "read/layer_pieces.hpp"
 
 #include <fmt/format.h>
 
@@ -80,16 +79,22 @@ bool is_layer(std::string_view bytes) {
            command == static_cast<std::uint16_t>(CommonLayerCommand::layer_short);
 }
 
-struct BinaryPiece {
-    CommonLayerGeometry geometry;
-    std::size_t end = 0;
-};
+} // namespace
 
-/// Returns where pieces begin, which is at a layer. Ends at the first command that is not sound.
-PieceBegins pieces_of(std::string_view bytes, std::size_t begin, bool aligned) {
-    PieceBegins begins{begin};
+PieceBegins binary_pieces(std::string_view bytes, const CommonLayerHeader& header) {
+    std::size_t begin = header.aligned ? (header.end + 3) / 4 * 4 : header.end;
+    // Some writers end the header with a line end, with which no command begins.
+    if (!header.aligned) {
+        const std::string_view rest = bytes.substr(begin);
+        if (rest.starts_with("\r\n"))
+            begin += 2;
+        else if (rest.starts_with("\n"))
+            begin += 1;
+    }
+    begin = std::min(begin, bytes.size());
+    PieceBegins begins{begin}; // the others are at layers, up to the first command that is not sound
     for (std::size_t at = begin; at < bytes.size();) {
-        const std::optional<std::uint64_t> size = common_layer_command_size(bytes.substr(at), aligned);
+        const std::optional<std::uint64_t> size = common_layer_command_size(bytes.substr(at), header.aligned);
         if (!size)
             break;
         if (is_layer(bytes.substr(at)))
@@ -99,11 +104,10 @@ PieceBegins pieces_of(std::string_view bytes, std::size_t begin, bool aligned) {
     return begins;
 }
 
-/// Reads commands from `begin` up to the first layer at or after `limit`.
-BinaryPiece read_piece(std::string_view bytes, const std::string& name, const CommonLayerHeader& header,
-                       std::size_t begin, std::size_t limit, ReadLimits& limits, const Executor& executor,
-                       ProgressMeter& progress) {
-    CommonLayerGeometry geometry(header, name, limits);
+CommonLayerGeometry read_binary_piece(std::string_view bytes, const std::string& name,
+                                      const CommonLayerHeader& header, std::size_t begin, std::size_t limit,
+                                      const Reading& reading) {
+    CommonLayerGeometry geometry(header, name, reading.limits);
     Bytes in(bytes, begin, header.aligned, name);
     // The standard specifies unsigned 16-bit numbers, but some exports have signed ones. Only the box in the
     // header distinguishes the two: if it has no negative coordinate, they are unsigned.
@@ -120,19 +124,12 @@ BinaryPiece read_piece(std::string_view bytes, const std::string& name, const Co
         std::memcpy(&bits, from, sizeof bits);
         return number(bits, signed_points);
     };
-    std::size_t reported = begin;
-    const auto report_progress = [&](std::size_t at) {
-        if (at <= reported + (1U << 22))
-            return;
-        executor.check_cancelled();
-        progress.add(at - reported);
-        reported = at;
-    };
+    ReadPosition position(reading, begin);
     while (in.left() > 0 && !in.only_padding_left()) {
         const std::size_t at = in.at();
         if (at >= limit && is_layer(bytes.substr(at)))
             break;
-        report_progress(at);
+        position.reached(at);
         const auto command = static_cast<CommonLayerCommand>(in.take<std::uint16_t>("a command"));
         const auto offset = at_byte(at);
         switch (command) {
@@ -173,7 +170,6 @@ BinaryPiece read_piece(std::string_view bytes, const std::string& name, const Co
             const auto number_of_points = static_cast<std::uint64_t>(points_each * count);
             std::vector<Point2>& points = geometry.expect_points(hatches, number_of_points, offset);
             for (std::uint64_t i = 0; i < number_of_points; ++i, from += size) {
-                report_progress(at + i * size);
                 if (!is_long) {
                     geometry.add_point(points, short_number(from), short_number(from + 2));
                     continue;
@@ -195,43 +191,9 @@ BinaryPiece read_piece(std::string_view bytes, const std::string& name, const Co
                     "the commands are 127 to 132: layers, polylines and hatches");
         }
     }
-    progress.add(in.at() - reported);
-    geometry.end_piece();
-    return {std::move(geometry), in.at()};
-}
-
-} // namespace
-
-CommonLayerGeometry read_binary_geometry(std::string_view bytes, const std::string& name,
-                                         const CommonLayerHeader& header, ReadLimits& limits,
-                                         Executor& executor, ProgressMeter& progress) {
-    std::size_t begin = header.aligned ? (header.end + 3) / 4 * 4 : header.end;
-    // Some writers end the header with a line end, with which no command begins.
-    if (!header.aligned) {
-        const std::string_view rest = bytes.substr(begin);
-        if (rest.starts_with("\r\n"))
-            begin += 2;
-        else if (rest.starts_with("\n"))
-            begin += 1;
-    }
-    begin = std::min(begin, bytes.size());
-    CommonLayerGeometry geometry(header, name, limits, {});
-    read_pieces(
-        pieces_of(bytes, begin, header.aligned), bytes.size(), executor,
-        [&](std::size_t from, std::size_t limit) {
-            return read_piece(bytes, name, header, from, limit, limits, executor, progress);
-        },
-        [&](BinaryPiece&& piece) { geometry.append(std::move(piece.geometry)); });
+    geometry.end = in.at();
+    position.end(geometry.end);
     return geometry;
-}
-
-CommonLayerGeometry read_binary_layer(std::string_view bytes, const std::string& name,
-                                      const CommonLayerHeader& header, std::size_t begin,
-                                      ReadLimits& limits) {
-    const Execution silent{.threads = 1};
-    const Executor executor(silent);
-    ProgressMeter progress(silent, Stage::read, bytes.size());
-    return read_piece(bytes, name, header, begin, begin + 1, limits, executor, progress).geometry;
 }
 
 } // namespace lamella

@@ -13,8 +13,7 @@
 #include "core/executor.hpp"
 #include "core/farthest.hpp"
 #include "read/common_layer_header.hpp"
-#include "read/layer_assembly.hpp"
-#include "read/read_limits.hpp"
+#include "read/slice_engine.hpp"
 
 #include <fmt/format.h>
 
@@ -130,7 +129,7 @@ class CommonLayerGeometry {
     /// Appends the contents of the next piece.
     void append(CommonLayerGeometry&& piece) {
         parts_.add(
-            piece.parts_, piece.layers_,
+            piece.parts_, piece.layers,
             [&](const CommonLayerPart& part) {
                 const BeamSettings beam = part.beam.after(beam_);
                 return CommonLayerPart{part.number, beam, beam.any() ? part.kind : VectorKind::contour};
@@ -139,7 +138,8 @@ class CommonLayerGeometry {
         for (const auto& [begin, beam] : piece.beams_)
             note_beam(begin, beam.after(beam_));
         beam_ = piece.beam_.after(beam_);
-        append_layers(layers_, std::move(piece.layers_), limits_);
+        append_layers(layers, std::move(piece.layers), limits_);
+        end = piece.end;
         decimals_.add(piece.decimals_);
         unclosed_.add(piece.unclosed_);
         returning_.add(piece.returning_);
@@ -170,40 +170,38 @@ class CommonLayerGeometry {
     void start_layer(std::size_t begin, double units, std::string location) {
         note_beam(begin, beam_);
         const double z = in_mm(units, location);
-        limits_.make_room(layers_, 1, [&] { return std::string_view(location); });
-        layers_.emplace_back();
-        layers_.back().z = z;
-        layers_.back().location = std::move(location);
-        layers_.back().begin = begin;
+        limits_.make_room(layers, 1, [&] { return std::string_view(location); });
+        layers.emplace_back();
+        layers.back().z = z;
+        layers.back().location = std::move(location);
+        layers.back().begin = begin;
     }
-    /// Ends a piece.
-    void end_piece() { drop_contents(layers_, limits_); }
-    [[nodiscard]] bool in_layer() const { return !layers_.empty(); }
+    [[nodiscard]] bool in_layer() const { return !layers.empty(); }
     /// Reserves memory for ends of hatch lines, or for points of a polyline, and returns the list to which
     /// they must be added.
     template <class Location>
     std::vector<Point2>& expect_points(bool hatches, std::uint64_t count, const Location& location) {
-        RawLayer& layer = layers_.back();
+        RawLayer& layer = layers.back();
         std::vector<Point2>& points = hatches ? layer.hatches : layer.points;
         limits_.make_room(points, count, location);
         layer.drawn = layer.drawn || count != 0;
         return points;
     }
     void add_point(std::vector<Point2>& to, double x, double y) {
-        const std::string& location = layers_.back().location;
+        const std::string& location = layers.back().location;
         decimals_.note(x);
         decimals_.note(y);
         to.push_back({in_mm(x, location) + 0.0, in_mm(y, location) + 0.0});
     }
     template <class Location>
     void end_hatches(std::int64_t part, const Location& location) {
-        layers_.back().end_hatches(number_of(part, VectorKind::hatch, location), limits_, location);
+        layers.back().end_hatches(number_of(part, VectorKind::hatch, location), limits_, location);
     }
 
     /// Ends a polyline with the given direction.
     template <class Location>
     void end_polyline(std::int64_t part, CommonLayerDirection direction, const Location& location) {
-        RawLayer& layer = layers_.back();
+        RawLayer& layer = layers.back();
         const std::size_t begin = layer.contour_begin();
         const bool returns = layer.returns();
         const bool returning_chain = direction == CommonLayerDirection::open && layer.is_returning_chain();
@@ -241,28 +239,26 @@ class CommonLayerGeometry {
             parts_.number_of({1}, at_end);
         ReadLabels labels;
         std::vector<CommonLayerPart> parts;
-        parts_.put(file, layers_, [&](const CommonLayerPart& part) {
+        parts_.put(file, layers, [&](const CommonLayerPart& part) {
             parts.push_back(part);
             const auto label = header.labels.find(part.number);
-            return LayerPart{label == header.labels.end() ? std::string() : labels.of(label->second), {}};
+            return PartInfo{.label = label == header.labels.end() ? std::string() : labels.of(label->second)};
         });
         labels.append_to(file.warnings);
         return parts;
     }
 
-    [[nodiscard]] std::vector<RawLayer>& layers() { return layers_; }
-    /// Returns the settings before layers, with the offset of the first layer that each applies to. Not
-    /// listed are those before which there is no setting.
-    [[nodiscard]] std::vector<LayerBeam>& beams() { return beams_; }
-
     /// Returns the only layer of a piece that is read again, with indices of these parts, which are those of
-    /// the file. `beam` are the settings before the piece.
-    [[nodiscard]] static RawLayer layer_again(CommonLayerGeometry&& piece, const CommonLayerHeader& header,
-                                              const BeamSettings& beam,
-                                              const std::vector<CommonLayerPart>& parts) {
-        CommonLayerGeometry whole(header, piece.name_, piece.limits_, beam);
+    /// the file. This is the geometry of the file.
+    [[nodiscard]] RawLayer layer_again(CommonLayerGeometry&& piece, const CommonLayerHeader& header,
+                                       const std::vector<CommonLayerPart>& parts) const {
+        const auto later =
+            std::upper_bound(beams_.begin(), beams_.end(), piece.layers.front().begin,
+                             [](std::size_t at, const LayerBeam& beam) { return at < beam.begin; });
+        CommonLayerGeometry whole(header, piece.name_, piece.limits_,
+                                  later == beams_.begin() ? BeamSettings{} : std::prev(later)->beam);
         whole.append(std::move(piece));
-        RawLayer layer = only_layer(std::move(whole.layers_));
+        RawLayer layer = only_layer(std::move(whole.layers));
         whole.parts_.put(layer, parts);
         return layer;
     }
@@ -281,6 +277,9 @@ class CommonLayerGeometry {
         dropped_.append_to(warnings);
         unknown_.append_to(warnings);
     }
+
+    std::vector<RawLayer> layers;
+    std::size_t end = 0; ///< offset at which the piece ends
 
   private:
     void note_beam(std::size_t begin, const BeamSettings& beam) {
@@ -307,8 +306,9 @@ class CommonLayerGeometry {
     const std::string& name_;
     ReadLimits& limits_;
     BeamSettings beam_; ///< of the vectors that follow
+    /// Settings before layers, with the offset of the first layer that each applies to. Not listed are those
+    /// before which there is no setting.
     std::vector<LayerBeam> beams_;
-    std::vector<RawLayer> layers_;
     Decimals decimals_;
     PartNumbers<CommonLayerPart> parts_;
     UnclosedContours unclosed_;
@@ -321,25 +321,20 @@ class CommonLayerGeometry {
         "commands are unknown here, or have no numbers that they can have; they were left out"};
 };
 
-/// Reads the geometry after the header of an ASCII file. Throws Error{input} with the line, Error{limit},
-/// Error{cancelled}.
-[[nodiscard]] CommonLayerGeometry read_ascii_geometry(std::string_view bytes, const std::string& name,
-                                                      const CommonLayerHeader& header, ReadLimits& limits,
-                                                      Executor& executor, ProgressMeter& progress);
-
-/// Reads a single layer of such a file again, which begins at this offset.
-[[nodiscard]] CommonLayerGeometry read_ascii_layer(std::string_view bytes, const std::string& name,
+/// Reads a piece of an ASCII file, from `begin`, which is on this line, up to the first layer at or after
+/// `limit`. Errors state the line.
+[[nodiscard]] CommonLayerGeometry read_ascii_piece(std::string_view bytes, const std::string& name,
                                                    const CommonLayerHeader& header, std::size_t begin,
-                                                   ReadLimits& limits);
+                                                   std::size_t limit, std::uint64_t line,
+                                                   const Reading& reading);
+/// Returns where pieces of an ASCII file begin.
+[[nodiscard]] TextPieces ascii_pieces(std::string_view bytes, const std::string& name,
+                                      const CommonLayerHeader& header, Executor& executor);
 
-/// Reads the geometry of a binary file; errors state the offset.
-[[nodiscard]] CommonLayerGeometry read_binary_geometry(std::string_view bytes, const std::string& name,
-                                                       const CommonLayerHeader& header, ReadLimits& limits,
-                                                       Executor& executor, ProgressMeter& progress);
-
-/// Reads a single layer of such a file again, which begins at this offset.
-[[nodiscard]] CommonLayerGeometry read_binary_layer(std::string_view bytes, const std::string& name,
+/// The same for binary files; errors state the offset.
+[[nodiscard]] CommonLayerGeometry read_binary_piece(std::string_view bytes, const std::string& name,
                                                     const CommonLayerHeader& header, std::size_t begin,
-                                                    ReadLimits& limits);
+                                                    std::size_t limit, const Reading& reading);
+[[nodiscard]] PieceBegins binary_pieces(std::string_view bytes, const CommonLayerHeader& header);
 
 } // namespace lamella

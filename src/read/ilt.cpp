@@ -290,7 +290,7 @@ LayerStack planes_of(const std::vector<LayerFile>& files, ReadLimits& limits) {
         const auto location = [&] {
             return std::string_view(file.path);
         };
-        for (const Layer& layer : file.planes()) {
+        for (const Layer& layer : file.planes) {
             limits.make_room(all, 1, location);
             all.push_back({.z = layer.z, .bottom = layer.bottom, .top = layer.top});
         }
@@ -315,7 +315,7 @@ constexpr std::size_t no_position = std::numeric_limits<std::size_t>::max();
 
 /// Returns the position of the layer of a file on each plane; no_position on planes that it does not have.
 std::vector<std::size_t> positions_of(const LayerFile& file, const LayerStack& planes) {
-    const LayerStack& layers = file.planes();
+    const LayerStack& layers = file.planes;
     std::vector<std::size_t> positions(planes.size(), no_position);
     std::size_t next = 0;
     for (std::size_t i = 0; i < planes.size(); ++i)
@@ -329,70 +329,24 @@ std::vector<std::size_t> positions_of(const LayerFile& file, const LayerStack& p
     return positions;
 }
 
-/// Gives a part the layers of another part on all planes; they are empty on planes that it does not have.
-void put_on_planes(LayerPart from, const LayerStack& planes, std::span<const std::size_t> positions,
-                   LayerPart& to) {
-    to.layers = planes;
-    if (!from.hatches.empty())
-        to.hatches.resize(planes.size());
-    for (std::size_t i = 0; i < planes.size(); ++i) {
-        if (positions[i] == no_position)
-            continue;
-        Layer& layer = from.layers[positions[i]];
-        Layer& plane = to.layers[i];
-        plane.points = layer.points;
-        plane.offsets = std::move(layer.offsets);
-        plane.rings = layer.rings;
-        if (!from.hatches.empty())
-            to.hatches[i] = std::move(from.hatches[positions[i]]);
-    }
-}
-
-/// A file of the archive whose layers are not in memory.
-struct StreamedFile {
-    ByteSource source;
-    std::shared_ptr<const LayerStream> stream;
+/// A file of the archive, and the positions of its layers on the planes of all files.
+struct JoinedFile {
+    ByteSource source; ///< empty if layers are kept in memory
+    LayerFile file;
     std::vector<std::size_t> positions;
 };
 
-/// Returns the streams of all files as one; the files have all parts of the archive, in order.
-LayerStream joined(std::vector<StreamedFile> files, const LayerStack& planes, const ReadLimits& limits) {
-    LayerStream all{.planes = planes, .contents = std::vector<PlaneContent>(planes.size())};
-    for (const StreamedFile& file : files) {
-        const LayerStream& stream = *file.stream;
-        all.boxes.insert(all.boxes.end(), stream.boxes.begin(), stream.boxes.end());
-        all.hatch_lines.insert(all.hatch_lines.end(), stream.hatch_lines.begin(), stream.hatch_lines.end());
-        all.largest_coordinate = std::max(all.largest_coordinate, stream.largest_coordinate);
-        all.plane_bytes += stream.plane_bytes;
-        all.largest_hatch_coordinate =
-            std::max(all.largest_hatch_coordinate, stream.largest_hatch_coordinate);
-        for (std::size_t i = 0; i < planes.size(); ++i)
-            if (const std::size_t position = file.positions[i]; position != no_position) {
-                const PlaneContent& content = stream.contents[position];
-                all.contents[i].contours = all.contents[i].contours || content.contours;
-                all.contents[i].hatch_lines += content.hatch_lines;
-            }
+/// Makes a plane of the layers of all files.
+ScanVectors joined_plane(const std::vector<JoinedFile>& files, std::size_t plane) {
+    ScanVectors vectors;
+    for (const auto& [source, file, positions] : files) {
+        if (positions[plane] != no_position)
+            vectors.append(file.make(positions[plane]));
+        else
+            for (std::size_t part = 0; part < file.parts.size(); ++part)
+                vectors.add({}, {});
     }
-    for (Box3& box : all.boxes)
-        if (!box.empty()) {
-            box.min.z = planes.front().bottom;
-            box.max.z = planes.back().top;
-        }
-    all.bytes = limits.bytes();
-    all.spare_bytes = limits.bytes_left();
-    all.parse = [files = std::move(files)](std::size_t plane) {
-        ScanVectors vectors;
-        for (const StreamedFile& file : files) {
-            const std::size_t position = file.positions[plane];
-            if (position != no_position)
-                vectors.append(file.stream->parse(position));
-            else
-                for (std::size_t part = 0; part < file.stream->boxes.size(); ++part)
-                    vectors.add({}, {});
-        }
-        return vectors;
-    };
-    return all;
+    return vectors;
 }
 
 } // namespace
@@ -404,7 +358,8 @@ bool is_ilt(const ZipReader& zip) {
 LayerFile read_ilt(const ZipReader& zip, ReadLimits& limits, const Execution& execution) {
     const ByteSource list = unpacked_entry(zip, *zip.find(ilt_parameters), limits);
     std::vector<CommonLayerContent> contents;
-    LayerFile result{.path = zip.name(), .format = "ilt", .warnings = zip.counted_warnings()};
+    LayerFile result = layer_file(zip.name(), "ilt");
+    result.warnings = zip.counted_warnings();
     std::uint64_t bytes = 0;
     std::vector<std::string> sections; // of `contents`
     std::vector<ByteSource> sources;   // likewise; layers that are parsed again refer to their bytes
@@ -472,34 +427,47 @@ LayerFile read_ilt(const ZipReader& zip, ReadLimits& limits, const Execution& ex
     result.rounding = files.front().rounding;
     for (const LayerFile& file : files)
         result.rounding.step_mm = std::min(result.rounding.step_mm, file.rounding.step_mm);
-    const LayerStack planes = planes_of(files, limits);
-    std::vector<StreamedFile> streamed;
+    result.planes = planes_of(files, limits);
+    result.contents.resize(result.planes.size());
+    std::vector<JoinedFile> joined;
     for (std::size_t i = 0; i < files.size(); ++i) {
         LayerFile& file = files[i];
-        std::vector<std::size_t> positions = positions_of(file, planes);
-        for (LayerPart& part : file.parts) {
-            std::string label = std::move(part.label);
-            if (part.exposure && !labelled_exposure(label)) {
-                if (file.parts.size() > 1 && !label.empty())
-                    part.exposure->part += ' ' + label;
-                label = part.exposure->label();
+        limits.add_bytes(result.planes.size() * (sizeof(PlaneContent) + sizeof(std::size_t)), file.path);
+        const std::vector<std::size_t> positions = positions_of(file, result.planes);
+        for (PartInfo part : file.parts) {
+            if (part.exposure && !labelled_exposure(part.label)) {
+                if (file.parts.size() > 1 && !part.label.empty())
+                    part.exposure->part += ' ' + part.label;
+                part.label = part.exposure->label();
             }
-            result.parts.push_back(
-                {.label = std::move(label), .layers = {}, .exposure = std::move(part.exposure)});
-            check_part_planes(result, planes.size(), bytes);
-            if (file.stream)
-                continue;
-            limits.add_bytes(planes.size() * (sizeof(Layer) + sizeof(PointArray) + of_empty_layer),
-                             file.path);
-            put_on_planes(std::move(part), planes, positions, result.parts.back());
+            if (!part.box.empty()) {
+                part.box.min.z = result.planes.front().bottom;
+                part.box.max.z = result.planes.back().top;
+            }
+            result.parts.push_back(std::move(part));
+            check_part_planes(result, result.planes.size(), bytes);
         }
-        if (file.stream) {
-            limits.add_bytes(planes.size() * (sizeof(PlaneContent) + sizeof(std::size_t)), file.path);
-            streamed.push_back({std::move(sources[i]), std::move(file.stream), std::move(positions)});
-        }
+        for (std::size_t plane = 0; plane < positions.size(); ++plane)
+            if (positions[plane] != no_position) {
+                const PlaneContent& content = file.contents[positions[plane]];
+                result.contents[plane].points += content.points;
+                result.contents[plane].hatch_lines += content.hatch_lines;
+            }
+        result.largest_coordinate = std::max(result.largest_coordinate, file.largest_coordinate);
+        result.largest_hatch_coordinate =
+            std::max(result.largest_hatch_coordinate, file.largest_hatch_coordinate);
+        result.bytes += file.bytes;
+        result.plane_bytes += file.plane_bytes;
+        joined.push_back({std::move(sources[i]), std::move(file), positions});
     }
-    if (!streamed.empty())
-        result.stream = std::make_shared<const LayerStream>(joined(std::move(streamed), planes, limits));
+    if (!limits.in_memory()) {
+        result.bytes = limits.bytes();
+        result.spare_bytes = limits.bytes_left();
+    }
+    result.make =
+        [joined = std::make_shared<const std::vector<JoinedFile>>(std::move(joined))](std::size_t plane) {
+            return joined_plane(*joined, plane);
+        };
     return result;
 }
 

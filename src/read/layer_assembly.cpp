@@ -4,6 +4,7 @@
 #include "lamella/core/error.hpp"
 
 #include "container/text_position.hpp"
+#include "contour/plane_sums.hpp"
 #include "core/counted.hpp"
 #include "core/let_go.hpp"
 
@@ -23,7 +24,7 @@ namespace {
 /// matter.
 bool is_in_order(const RawLayer& raw, const LayerFile& file) {
     std::tuple<std::uint32_t, RawLayer::Run::Kind> last{};
-    for (const RawLayer::Run& run : raw.runs()) {
+    for (const RawLayer::Run& run : raw.runs) {
         if (!file.parts[run.part].exposure)
             continue;
         if (last > std::tuple(run.part, run.kind))
@@ -36,7 +37,7 @@ bool is_in_order(const RawLayer& raw, const LayerFile& file) {
 /// Warns if the order of vectors changes, because machines execute them in this order.
 void report_changed_order(std::span<const RawLayer> layers, LayerFile& file, Executor& executor) {
     if (std::none_of(file.parts.begin(), file.parts.end(),
-                     [](const LayerPart& part) { return part.exposure.has_value(); }))
+                     [](const PartInfo& part) { return part.exposure.has_value(); }))
         return;
     std::vector<char> in_order(layers.size());
     executor.for_chunks(layers.size(), 1, [&](std::uint64_t i, std::uint64_t, unsigned) {
@@ -144,49 +145,22 @@ ScanVectors make_layers(const PlacedLayer& plane, const std::vector<bool>& expos
 
 std::vector<bool> exposed_parts(const LayerFile& file) {
     std::vector<bool> exposed;
-    for (const LayerPart& part : file.parts)
+    for (const PartInfo& part : file.parts)
         exposed.push_back(part.exposure.has_value());
     return exposed;
 }
 
-/// Returns a stream that parses the layers of the planes.
-LayerStream stream_of(const LayerFile& file, std::span<const PlacedLayer> planes, const ReadLimits& limits,
-                      ParseLayer parse) {
-    LayerStream stream{.boxes = std::vector<Box3>(file.parts.size()),
-                       .hatch_lines = std::vector<std::uint64_t>(file.parts.size())};
+/// Returns a function that parses the layers of a plane again.
+std::function<ScanVectors(std::size_t)> parsing(std::span<const PlacedLayer> planes,
+                                                std::vector<bool> exposed, const ReadLimits& limits,
+                                                ParseLayer parse) {
     std::vector<std::vector<std::size_t>> begins; // of each plane
     for (const PlacedLayer& plane : planes) {
-        stream.planes.push_back(
-            {.index = plane.index, .z = plane.z, .bottom = plane.bottom, .top = plane.top});
         begins.emplace_back().push_back(plane.raw->begin);
         begins.back().insert(begins.back().end(), plane.raw->joined.begin(), plane.raw->joined.end());
-        PlaneContent& content = stream.contents.emplace_back();
-        std::uint64_t points = 0;
-        for (const RawLayer::Run& run : plane.raw->runs()) {
-            stream.boxes[run.part].add(run.box);
-            points += run.end - run.begin;
-            const bool hatches = run.kind == RawLayer::Run::Kind::hatch;
-            double& largest = hatches ? stream.largest_hatch_coordinate : stream.largest_coordinate;
-            for (const Point3& corner : {run.box.min, run.box.max})
-                largest = std::max({largest, std::abs(corner.x), std::abs(corner.y)});
-            if (hatches) {
-                stream.hatch_lines[run.part] += (run.end - run.begin) / 2;
-                content.hatch_lines += (run.end - run.begin) / 2;
-            } else {
-                content.contours = true;
-            }
-        }
-        stream.plane_bytes = std::max(stream.plane_bytes, bytes_of_plane(points));
     }
-    stream.bytes = limits.bytes();
-    stream.spare_bytes = limits.bytes_left();
-    for (Box3& box : stream.boxes)
-        if (!box.empty()) {
-            box.min.z = planes.front().bottom;
-            box.max.z = planes.back().top;
-        }
-    stream.parse = [begins = std::move(begins), exposed = exposed_parts(file), &limits,
-                    parse = std::move(parse)](std::size_t position) {
+    return [begins = std::move(begins), exposed = std::move(exposed), &limits,
+            parse = std::move(parse)](std::size_t position) {
         ReadLimits own(limits); // what it counts is freed with the plane
         own.keep_in_memory();
         const std::vector<std::size_t>& layers = begins[position];
@@ -195,10 +169,17 @@ LayerStream stream_of(const LayerFile& file, std::span<const PlacedLayer> planes
             raw.append(parse(begin, own));
         return make_layers({&raw}, exposed, own, [&] { return fmt::format("layer {}", position); });
     };
-    return stream;
 }
 
 } // namespace
+
+LayerFile layer_file(const std::string& name, std::string_view format, double units_mm) {
+    LayerFile file;
+    file.path = name;
+    file.format = format;
+    file.units_mm = units_mm;
+    return file;
+}
 
 std::string_view negative_parameter(const ParameterSet& set) {
     return set.power_w < 0           ? "power"
@@ -252,13 +233,13 @@ bool RawLayer::keep_contour(bool closed, std::uint32_t part) {
     return true;
 }
 
-std::vector<RawLayer::Run> RawLayer::runs() const {
-    std::vector<Run> runs = dropped_;
+void RawLayer::end_layer(ReadLimits& limits) {
+    assert(runs.empty());
     const auto add = [&](std::uint32_t part, Run::Kind kind, std::size_t from, std::size_t to) {
         if (!runs.empty() && runs.back().part == part && runs.back().kind == kind)
             runs.back().end = to;
         else
-            runs.push_back({part, kind, from, to});
+            runs.push_back({part, kind, from, to, {}});
     };
     std::size_t contour = 0;
     const auto add_contours = [&](std::size_t up_to) {
@@ -272,24 +253,18 @@ std::vector<RawLayer::Run> RawLayer::runs() const {
             add(lines.part, Run::Kind::hatch, from, lines.end);
     });
     add_contours(ends.size());
-    return runs;
-}
-
-void RawLayer::drop_contents(ReadLimits& limits) {
-    assert(dropped_.empty());
-    std::vector<Run> all = runs();
-    for (Run& run : all)
-        for (const Point2& p : std::span(run.kind == Run::Kind::hatch ? hatches : points)
-                                   .subspan(run.begin, run.end - run.begin))
-            run.box.add(Point3{p.x + 0.0, p.y + 0.0, 0});
-    limits.add_bytes(all.size() * sizeof(Run), location);
+    for (Run& run : runs)
+        run.box = PlaneSums::flat_box(std::span(run.kind == Run::Kind::hatch ? hatches : points)
+                                          .subspan(run.begin, run.end - run.begin));
+    limits.add_bytes(runs.size() * sizeof(Run), location);
+    if (limits.in_memory())
+        return;
     limits.give_back(0, (points.capacity() + hatches.capacity()) * sizeof(Point2) +
                             ends.capacity() * sizeof(Contour) + hatch_ends.capacity() * sizeof(Hatches));
     let_go(points);
     let_go(ends);
     let_go(hatches);
     let_go(hatch_ends);
-    dropped_ = std::move(all);
 }
 
 void RawLayer::renumber(std::span<const std::uint32_t> numbers) {
@@ -301,46 +276,49 @@ void RawLayer::renumber(std::span<const std::uint32_t> numbers) {
     };
     renumber_all(ends);
     renumber_all(hatch_ends);
-    renumber_all(dropped_);
+    renumber_all(runs);
 }
 
 void add_layers(LayerFile& file, std::span<const PlacedLayer> planes, ReadLimits& limits, Executor& executor,
                 ParseLayer parse) {
-    const auto location = [&](const PlacedLayer& plane) {
-        return [&plane] {
-            return plane.raw->location.empty() ? fmt::format("layer {}", plane.index) : plane.raw->location;
-        };
-    };
-    if (parse && !limits.in_memory()) {
-        limits.add_bytes(2 * planes.size() * (sizeof(Layer) + of_empty_layer + sizeof(PlaneContent)));
-        file.stream = std::make_shared<const LayerStream>(stream_of(file, planes, limits, std::move(parse)));
+    const std::size_t parts = limits.in_memory() ? file.parts.size() : 1;
+    limits.add_bytes(planes.size() * (parts * (sizeof(Layer) + of_empty_layer + sizeof(PointArray)) +
+                                      sizeof(Layer) + sizeof(PlaneContent)),
+                     planes.empty() ? std::string_view() : planes.front().raw->location);
+    PlaneSums sums(file.parts.size());
+    std::uint64_t largest = 0; // number of points
+    for (const PlacedLayer& plane : planes) {
+        file.planes.push_back({.index = plane.index, .z = plane.z, .bottom = plane.bottom, .top = plane.top});
+        PlaneContent& content = file.contents.emplace_back();
+        for (const RawLayer::Run& run : plane.raw->runs) {
+            if (run.kind == RawLayer::Run::Kind::hatch) {
+                sums.add_hatches(run.part, run.box, (run.end - run.begin) / 2);
+                content.hatch_lines += (run.end - run.begin) / 2;
+            } else {
+                sums.add_contours(run.part, run.box);
+                content.points += run.end - run.begin;
+            }
+        }
+        largest = std::max(largest, content.points + 2 * content.hatch_lines);
+    }
+    sums.put(file);
+    std::vector<bool> exposed = exposed_parts(file);
+    if (!limits.in_memory()) {
+        file.bytes = limits.bytes();
+        file.spare_bytes = limits.bytes_left();
+        file.plane_bytes = bytes_of_plane(largest);
+        file.make = parsing(planes, std::move(exposed), limits, std::move(parse));
         return;
     }
-    std::vector<char> hatched(file.parts.size());
-    for (const PlacedLayer& plane : planes)
-        for_pieces(plane.raw->hatch_ends, [&](std::size_t begin, const RawLayer::Hatches& hatches) {
-            hatched[hatches.part] = hatched[hatches.part] != 0 || hatches.end != begin ? 1 : 0;
-        });
-    for (std::size_t i = 0; i < file.parts.size() && !planes.empty(); ++i) {
-        LayerPart& part = file.parts[i];
-        assert(part.layers.empty());
-        limits.add_bytes_at(planes.size() * (sizeof(Layer) + of_empty_layer + sizeof(PointArray)),
-                            location(planes.front()));
-        part.layers.resize(planes.size());
-        if (hatched[i] != 0)
-            part.hatches.resize(planes.size());
-    }
-    const std::vector<bool> exposed = exposed_parts(file);
+    std::vector<ScanVectors> kept(planes.size());
     executor.for_chunks(planes.size(), 1, [&](std::uint64_t i, std::uint64_t, unsigned) {
-        ScanVectors layers = make_layers(planes[i], exposed, limits, location(planes[i]));
-        for (std::size_t part = 0; part < file.parts.size(); ++part) {
-            LayerPart& to = file.parts[part];
-            to.layers[i] = std::move(layers.polylines[part]);
-            if (!to.hatches.empty())
-                to.hatches[i] = std::move(layers.hatches[part]);
-        }
+        kept[i] = make_layers(planes[i], exposed, limits, [&] {
+            const std::string& location = planes[i].raw->location;
+            return location.empty() ? fmt::format("layer {}", planes[i].index) : location;
+        });
     });
     executor.check_cancelled();
+    keep_planes(file, std::move(kept));
 }
 
 void add_layers_by_tops(LayerFile& file, std::span<RawLayer> layers, double bottom, ReadLimits& limits,
@@ -384,7 +362,7 @@ void check_part_planes(const LayerFile& file, std::uint64_t planes, std::uint64_
 void RawLayer::append(const RawLayer& other) {
     joined.push_back(other.begin);
     joined.insert(joined.end(), other.joined.begin(), other.joined.end());
-    dropped_.insert(dropped_.end(), other.dropped_.begin(), other.dropped_.end());
+    runs.insert(runs.end(), other.runs.begin(), other.runs.end());
     const std::size_t contours = ends.size();
     const std::size_t had_points = points.size();
     points.insert(points.end(), other.points.begin(), other.points.end());

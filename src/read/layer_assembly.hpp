@@ -91,7 +91,7 @@ struct RawLayer {
     struct Contour {
         std::size_t end; ///< index in `points`
         bool closed;
-        std::uint32_t part; ///< index in LayerFile::parts
+        std::uint32_t part; ///< index in PlaneSource::parts
     };
     struct Hatches {
         std::size_t end; ///< index in `hatches`
@@ -107,7 +107,7 @@ struct RawLayer {
         Kind kind;
         std::size_t begin; ///< indices in `points`, or in `hatches`
         std::size_t end;
-        Box3 box = {}; ///< of the points, at a height of 0; set by `drop_contents`
+        Box3 box; ///< of the points, at a height of 0
     };
 
     double z = 0;          ///< as in the file
@@ -118,8 +118,9 @@ struct RawLayer {
     std::vector<Contour> ends;
     std::vector<Point2> hatches; ///< two points each
     std::vector<Hatches> hatch_ends;
-    bool drawn = false; ///< the file has points for this layer, possibly only of dropped contours (Common
-                        ///< Layer Interface)
+    std::vector<Run> runs; ///< in the order of the file; set by `end_layer`
+    bool drawn = false;    ///< the file has points for this layer, possibly only of dropped contours (Common
+                           ///< Layer Interface)
 
     /// Returns the index in `points` of the first point of the contour under construction.
     [[nodiscard]] std::size_t contour_begin() const { return ends.empty() ? 0 : ends.back().end; }
@@ -153,17 +154,13 @@ struct RawLayer {
     /// Appends the contours and hatches of another layer of the same height.
     void append(const RawLayer& other);
 
-    /// Returns the runs in the order of the file.
-    [[nodiscard]] std::vector<Run> runs() const;
-    /// Frees the contours and hatches. Their runs remain.
-    void drop_contents(ReadLimits& limits);
+    /// Finds the runs. Frees the contours and hatches unless planes are kept in memory.
+    void end_layer(ReadLimits& limits);
     /// Replaces part i by numbers[i].
     void renumber(std::span<const std::uint32_t> numbers);
 
   private:
     bool keep_contour(bool closed, std::uint32_t part);
-
-    std::vector<Run> dropped_; ///< what is known of dropped contents
 };
 
 /// Numbers the parts of contours and hatches, identified by keys, in the order of their first occurrence.
@@ -237,7 +234,7 @@ class PartNumbers {
 
   private:
     /// Bytes of the part and of temporary data for it.
-    static constexpr std::uint64_t of_part = node_bytes + sizeof(Key) + 2 * sizeof(LayerPart);
+    static constexpr std::uint64_t of_part = node_bytes + sizeof(Key) + 2 * sizeof(PartInfo);
 
     static void renumber(std::span<RawLayer> layers, const std::vector<std::uint32_t>& numbers) {
         for (RawLayer& layer : layers)
@@ -262,12 +259,11 @@ void append_layers(std::vector<Raw>& layers, std::vector<Raw>&& piece, ReadLimit
     limits.give_back(0, counted);
 }
 
-/// Drops the contents of the layers of a piece unless layers are kept in memory.
+/// Ends the layers of a piece of the file.
 template <class Raw>
-void drop_contents(std::vector<Raw>& layers, ReadLimits& limits) {
-    if (!limits.in_memory())
-        for (Raw& layer : layers)
-            layer.drop_contents(limits);
+void end_layers(std::vector<Raw>& layers, ReadLimits& limits) {
+    for (Raw& layer : layers)
+        layer.end_layer(limits);
 }
 
 /// Parses the layer that begins at an offset again, with indices of parts in the file. May be called by any
@@ -280,6 +276,9 @@ template <class Raw>
     assert(layers.size() == 1);
     return std::move(layers.front());
 }
+
+/// Returns a file of which only this is known.
+[[nodiscard]] LayerFile layer_file(const std::string& name, std::string_view format, double units_mm = 0);
 
 /// Returns the name of the first parameter of scan vectors that is negative although it must not be; empty if
 /// there is none.
@@ -309,21 +308,21 @@ struct PlacedLayer {
     double top = 0;
 };
 
-/// Gives each part, which has no layers yet, a layer on each plane, in normal form unless the part has an
-/// exposure. Frees the contours and hatches of each RawLayer; in the limits, the layers take their place. All
-/// threads make layers. If `parse` is given and layers are not kept in memory, gives the file a stream
-/// instead; the limits must live as long.
+/// Gives the file, which has its parts, these planes. Layers of parts without an exposure are in normal form.
+/// If planes are kept in memory, makes them on all threads and frees the contours and hatches of each
+/// RawLayer; in the limits, the layers take their place. Otherwise planes are parsed again when they are
+/// needed; the limits must live as long.
 void add_layers(LayerFile& file, std::span<const PlacedLayer> planes, ReadLimits& limits, Executor& executor,
-                ParseLayer parse = {});
+                ParseLayer parse);
 
 /// Adds layers whose heights are their tops. Each layer extends down to the top of the one before, the first
 /// one to `bottom`. Cuts are assumed to be half-way up. Warns of layers in which the order of scan vectors
 /// changes.
 void add_layers_by_tops(LayerFile& file, std::span<RawLayer> layers, double bottom, ReadLimits& limits,
-                        Executor& executor, ParseLayer parse = {});
+                        Executor& executor, ParseLayer parse);
 /// Adds layers whose heights are their bottoms in the same way; the last one extends up to `top`.
 void add_layers_by_bottoms(LayerFile& file, std::span<RawLayer> layers, double top, ReadLimits& limits,
-                           Executor& executor, ParseLayer parse = {});
+                           Executor& executor, ParseLayer parse);
 
 /// Throws Error{input} if the number of parts times the number of planes is implausibly large for the size of
 /// the file, because even empty layers take memory. A few millions are accepted for any size, because a stack

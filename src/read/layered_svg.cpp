@@ -256,8 +256,8 @@ class SvgReader {
 
     void end() {
         if (--depth_ == 1) {
-            if (in_layer_ && !limits_.in_memory())
-                groups_.back().drop_contents(limits_);
+            if (in_layer_)
+                groups_.back().end_layer(limits_);
             in_layer_ = false;
         }
         if (depth_ == 2)
@@ -436,9 +436,9 @@ class SvgReader {
     void meet(const MetPart& part) {
         if (part.number > parts_.size()) {
             make_room(parts_, part.line);
-            parts_.emplace_back();
+            parts_.push_back({.label = {}});
         }
-        if (LayerPart& drawn = parts_[part.number - 1]; drawn.label.empty()) {
+        if (PartInfo& drawn = parts_[part.number - 1]; drawn.label.empty()) {
             drawn.label = labels_.of(part.label);
             drawn.exposure = labelled_exposure(drawn.label);
         }
@@ -592,7 +592,7 @@ class SvgReader {
     std::uint64_t line_ = 1;
     std::size_t position_ = 0; ///< of the element
     PlaneRule rule_ = PlaneRule::section_above;
-    std::vector<LayerPart> parts_ = std::vector<LayerPart>(1);
+    std::vector<PartInfo> parts_ = {PartInfo{.label = {}}};
     std::vector<MetPart> met_;             ///< of a piece, in the order of the file
     std::map<std::size_t, bool> labelled_; ///< whether these parts of a piece have labels
     std::uint32_t part_ = 0;
@@ -659,7 +659,8 @@ class SvgDocument {
         limits_.keep_text_in_memory(bytes_.size());
         if (!in_pieces_)
             limits_.keep_in_memory();
-        LayerFile file{.path = name_, .format = "svg", .units_mm = 1, .rounding = text_rounding};
+        LayerFile file = layer_file(name_, "svg", 1);
+        file.rounding = text_rounding;
         std::uint64_t held = 0;
         XmlHandlers handlers = handlers_of(reader_, held, limits_);
         handlers.progress = [&](std::size_t read) {

@@ -2,16 +2,15 @@
 #include "container/text_position.hpp"
 #include "core/executor.hpp"
 #include "core/farthest.hpp"
-#include "read/layer_assembly.hpp"
-#include "read/layer_pieces.hpp"
 #include "read/layer_readers.hpp"
-#include "read/read_limits.hpp"
+#include "read/slice_engine.hpp"
 #include "read/text_chunks.hpp"
 
 #include <fmt/format.h>
 
 #include <cmath>
 #include <exception>
+#include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -54,10 +53,8 @@ double length(JsonText& text) {
 /// Reads the layers of a piece.
 class JsonPieceReader {
   public:
-    JsonPieceReader(JsonText text, std::size_t parts, ReadLimits& limits, const Executor& executor,
-                    ProgressMeter& progress)
-        : text_(std::move(text)), parts_(parts), limits_(limits), executor_(executor), progress_(progress),
-          reported_(text_.at()) {}
+    JsonPieceReader(JsonText text, std::size_t parts, const Reading& reading)
+        : text_(std::move(text)), parts_(parts), limits_(reading.limits), position_(reading, text_.at()) {}
 
     /// Reads layers up to the first one at or after `limit`.
     JsonPiece read(std::size_t limit) {
@@ -73,14 +70,12 @@ class JsonPieceReader {
             piece_.error = std::current_exception();
             piece_.end = std::string_view::npos;
         }
-        report_progress();
-        drop_contents(piece_.layers, limits_);
+        position_.end(text_.at());
         return std::move(piece_);
     }
 
   private:
     void read_layer() {
-        executor_.check_cancelled();
         std::optional<double> z;
         std::optional<double> bottom;
         std::optional<double> top;
@@ -118,12 +113,6 @@ class JsonPieceReader {
         layer.end = text_.at();
         limits_.make_room(piece_.layers, 1, at_byte(text_.at()));
         piece_.layers.push_back(std::move(layer));
-        report_progress();
-    }
-
-    void report_progress() {
-        progress_.add(text_.at() - reported_);
-        reported_ = text_.at();
     }
 
     void read_part(RawLayer& raw, std::uint32_t part) {
@@ -155,11 +144,7 @@ class JsonPieceReader {
         bool half = false;
         text_.array([&] {
             const double value = length(text_);
-            constexpr std::size_t chunk = std::size_t{1} << 22;
-            if (text_.at() - reported_ > chunk) {
-                executor_.check_cancelled();
-                report_progress();
-            }
+            position_.reached(text_.at());
             if (half) {
                 to.back().y = value;
             } else {
@@ -175,17 +160,76 @@ class JsonPieceReader {
     JsonText text_;
     std::size_t parts_; ///< number of those of the file
     ReadLimits& limits_;
-    const Executor& executor_;
-    ProgressMeter& progress_;
-    std::size_t reported_;
+    ReadPosition position_;
     JsonPiece piece_;
+};
+
+/// The list of layers in a document.
+class JsonLayers {
+  public:
+    using Piece = JsonPiece;
+
+    /// `text` is before the first layer. `file` has its parts, and must live until all layers are read.
+    JsonLayers(std::string_view bytes, JsonText text, const LayerFile& file)
+        : bytes_(bytes), name_(file.path), begin_(text.at()), depth_(text.depth()), parts_(file.parts.size()),
+          file_(file), text_(std::move(text)) {}
+
+    [[nodiscard]] PieceBegins begins(Executor& executor) const {
+        return find_text_pieces(bytes_, begin_, beginning_of_layers(), executor).begins();
+    }
+    [[nodiscard]] std::size_t end() const { return bytes_.size(); }
+    [[nodiscard]] JsonPiece parse(std::size_t begin, std::size_t limit, const Reading& reading) const {
+        return JsonPieceReader(JsonText(bytes_, name_, begin, depth_), parts_, reading).read(limit);
+    }
+    [[nodiscard]] static RawLayer layer(JsonPiece&& piece) { return only_layer(std::move(piece.layers)); }
+
+    void append(JsonPiece&& piece, ReadLimits& limits) {
+        for (std::size_t i = 0; i < piece.layers.size(); ++i) {
+            JsonLayer& layer = piece.layers[i];
+            text_.move_to(layer.end);
+            if (i == 0 && !layers_.empty())
+                check_ascending(layers_.back().z, layer.z, text_);
+            check_part_planes(file_, layers_.size() + i + 1, bytes_.size());
+            layer.index = layer.index.value_or(static_cast<double>(layers_.size() + i));
+        }
+        if (piece.error)
+            std::rethrow_exception(piece.error);
+        text_.move_to(piece.stop);
+        dropped_.add(piece.dropped);
+        append_layers(layers_, std::move(piece.layers), limits);
+    }
+
+    /// Returns the offset behind the layers.
+    [[nodiscard]] std::size_t stop() const { return text_.at(); }
+    [[nodiscard]] const DroppedContours& dropped() const { return dropped_; }
+    [[nodiscard]] std::vector<JsonLayer> take_layers() { return std::move(layers_); }
+
+  private:
+    /// Returns the text with which the first layer begins, up to the name of its first member. Other layers
+    /// probably begin alike.
+    [[nodiscard]] std::string_view beginning_of_layers() const {
+        constexpr std::size_t longest = 256;
+        const std::string_view text = bytes_.substr(begin_, longest);
+        const std::size_t name = text.find('"');
+        return text.substr(0, name == std::string_view::npos ? longest : text.find('"', name + 1));
+    }
+
+    std::string_view bytes_;
+    std::string name_;
+    std::size_t begin_;
+    int depth_;
+    std::size_t parts_;
+    const LayerFile& file_;
+    JsonText text_;
+    std::vector<JsonLayer> layers_;
+    DroppedContours dropped_;
 };
 
 class LayersJsonReader {
   public:
     LayersJsonReader(std::string_view bytes, LayerFile& file, ReadLimits& limits, const Execution& execution)
         : bytes_(bytes), text_(bytes, file.path, after_byte_order_mark(bytes)), file_(file), limits_(limits),
-          executor_(execution), progress_(execution, Stage::read, bytes.size()) {}
+          execution_(execution) {}
 
     void read() {
         limits_.keep_text_in_memory(bytes_.size());
@@ -208,26 +252,17 @@ class LayersJsonReader {
         text_.end();
         if (!known_)
             text_.fail("no \"format\"", fmt::format("it must be \"{}\"", format_name));
-        if (layers_.empty())
+        if (!layers_)
             text_.fail("no layer", "a slice file must have at least one");
+        std::vector<JsonLayer> layers = layers_->take_layers();
         std::vector<PlacedLayer> planes;
-        planes.reserve(layers_.size());
-        for (JsonLayer& layer : layers_)
+        planes.reserve(layers.size());
+        for (JsonLayer& layer : layers)
             planes.push_back(
                 {&layer, static_cast<std::uint64_t>(*layer.index), layer.z, layer.bottom, layer.top});
-        add_layers(file_, planes, limits_, executor_,
-                   [bytes = bytes_, name = file_.path, depth = depth_of_layers_,
-                    parts = file_.parts.size()](std::size_t begin, ReadLimits& limits) {
-                       const Execution silent{.threads = 1};
-                       const Executor executor(silent);
-                       ProgressMeter progress(silent, Stage::read, bytes.size());
-                       return only_layer(JsonPieceReader(JsonText(bytes, name, begin, depth), parts, limits,
-                                                         executor, progress)
-                                             .read(begin + 1)
-                                             .layers);
-                   });
-        dropped_.append_to(file_.warnings);
-        progress_.finish();
+        Executor executor(execution_);
+        add_layers(file_, planes, limits_, executor, parsing_again<JsonLayers>(layers_));
+        layers_->dropped().append_to(file_.warnings);
     }
 
   private:
@@ -274,7 +309,7 @@ class LayersJsonReader {
             });
             limits_.make_room(file_.parts, 1, at_byte(text_.at()));
             label = labels.of(label);
-            file_.parts.push_back({label, {}, labelled_exposure(label)});
+            file_.parts.push_back({.label = label, .box = {}, .exposure = labelled_exposure(label)});
         });
         labels.append_to(file_.warnings);
     }
@@ -282,59 +317,23 @@ class LayersJsonReader {
     void read_layers() {
         if (!known_ || file_.parts.empty())
             text_.fail("layers", "\"format\" and \"parts\" must come before them");
-        if (!layers_.empty())
+        if (layers_)
             text_.fail("\"layers\" a second time", "they must come once");
         text_.array([&] {
             text_.skip_blanks();
-            depth_of_layers_ = text_.depth();
-            const PieceBegins begins =
-                find_text_pieces(bytes_, text_.at(), beginning_of_layers(), executor_).begins();
-            read_pieces(
-                begins, bytes_.size(), executor_,
-                [&](std::size_t begin, std::size_t limit) {
-                    return JsonPieceReader(JsonText(bytes_, file_.path, begin, text_.depth()),
-                                           file_.parts.size(), limits_, executor_, progress_)
-                        .read(limit);
-                },
-                [&](JsonPiece&& piece) { take(std::move(piece)); });
+            layers_ = std::make_shared<JsonLayers>(bytes_, text_, file_);
+            read_layers_of(*layers_, limits_, execution_, bytes_.size());
+            text_.move_to(layers_->stop());
         });
-    }
-
-    /// Returns the text with which the first layer begins, up to the name of its first member. Other layers
-    /// probably begin alike.
-    [[nodiscard]] std::string_view beginning_of_layers() const {
-        constexpr std::size_t longest = 256;
-        const std::string_view text = bytes_.substr(text_.at(), longest);
-        const std::size_t name = text.find('"');
-        return text.substr(0, name == std::string_view::npos ? longest : text.find('"', name + 1));
-    }
-
-    void take(JsonPiece&& piece) {
-        for (std::size_t i = 0; i < piece.layers.size(); ++i) {
-            JsonLayer& layer = piece.layers[i];
-            text_.move_to(layer.end);
-            if (i == 0 && !layers_.empty())
-                check_ascending(layers_.back().z, layer.z, text_);
-            check_part_planes(file_, layers_.size() + i + 1, bytes_.size());
-            layer.index = layer.index.value_or(static_cast<double>(layers_.size() + i));
-        }
-        if (piece.error)
-            std::rethrow_exception(piece.error);
-        text_.move_to(piece.stop);
-        dropped_.add(piece.dropped);
-        append_layers(layers_, std::move(piece.layers), limits_);
     }
 
     std::string_view bytes_;
     JsonText text_;
     LayerFile& file_;
     ReadLimits& limits_;
-    Executor executor_;
-    ProgressMeter progress_;
+    const Execution& execution_;
     bool known_ = false;
-    int depth_of_layers_ = 0;
-    std::vector<JsonLayer> layers_;
-    DroppedContours dropped_;
+    std::shared_ptr<JsonLayers> layers_;
 };
 
 } // namespace
@@ -346,7 +345,7 @@ bool is_json(std::string_view bytes) {
 
 LayerFile read_layers_json(std::string_view bytes, const std::string& name, ReadLimits& limits,
                            const Execution& execution) {
-    LayerFile file{.path = name, .format = "json", .units_mm = 1};
+    LayerFile file = layer_file(name, "json", 1);
     LayersJsonReader(bytes, file, limits, execution).read();
     return file;
 }

@@ -229,7 +229,7 @@ class NpzReader {
         ReadLabels read_labels;
         for (std::uint64_t i = 0; i < labels.size(); ++i) {
             const std::string label = read_labels.of(labels.text(i));
-            file_.parts.push_back({label, {}, labelled_exposure(label)});
+            file_.parts.push_back({.label = label, .box = {}, .exposure = labelled_exposure(label)});
         }
         read_labels.append_to(file_.warnings);
         check_part_planes(file_, z.size(), zip_.unpacked());
@@ -352,7 +352,8 @@ class NpzReader {
             constexpr std::uint64_t any = std::numeric_limits<std::uint64_t>::max();
             RawLayer raw;
             DroppedContours dropped;
-            const auto for_run = [&](const Array& layer, std::uint64_t from, std::uint64_t to, const auto& add) {
+            const auto for_run = [&](const Array& layer, std::uint64_t from, std::uint64_t to,
+                                     const auto& add) {
                 for (std::uint64_t i = from; i < to && layer.whole(i, any) == layer.whole(from, any); ++i)
                     add(i);
             };
@@ -422,15 +423,15 @@ class NpzReader {
             };
             if (piece.layers.empty() || piece.layers.back().first != layer) {
                 limits_.make_room(piece.layers, 1, position);
-                if (!limits_.in_memory() && !piece.layers.empty())
-                    piece.layers.back().second.drop_contents(limits_);
+                if (!piece.layers.empty())
+                    piece.layers.back().second.end_layer(limits_);
                 piece.layers.emplace_back(layer, RawLayer()).second.begin = static_cast<std::size_t>(i);
             }
             contours.add(i, begin, end, part, piece.layers.back().second, limits_, piece.dropped);
             begin = end;
         }
-        if (!limits_.in_memory() && !piece.layers.empty())
-            piece.layers.back().second.drop_contents(limits_);
+        if (!piece.layers.empty())
+            piece.layers.back().second.end_layer(limits_);
         piece.end = to;
         return piece;
     }
@@ -484,8 +485,7 @@ class NpzReader {
         const auto end_run = [&] {
             if (run.hatches.empty())
                 return;
-            if (!limits_.in_memory())
-                run.drop_contents(limits_);
+            run.end_layer(limits_);
             put(std::exchange(run, RawLayer()), raw[of_layer]);
         };
         for (std::uint64_t i = 0; i < hatches.lines.size(); ++i) {
@@ -515,7 +515,8 @@ bool is_npz(const ZipReader& zip) {
 }
 
 LayerFile read_npz(const ZipReader& zip, ReadLimits& limits, const Execution& execution) {
-    LayerFile file{.path = zip.name(), .format = "npz", .units_mm = 1, .warnings = zip.counted_warnings()};
+    LayerFile file = layer_file(zip.name(), "npz", 1);
+    file.warnings = zip.counted_warnings();
     NpzReader(zip, file, limits).read(execution);
     return file;
 }

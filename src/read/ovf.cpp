@@ -551,7 +551,7 @@ class OvfReader {
             reader.read(plane);
             progress_.add(plane.bytes);
         }
-        drop_contents(piece.layers, limits_);
+        end_layers(piece.layers, limits_);
         return piece;
     }
 
@@ -576,7 +576,7 @@ class OvfReader {
             const auto [label, is_new] = labels.try_emplace(kind.part);
             if (is_new)
                 label->second = names_.of(read_labels.of(job_.label(kind.part)));
-            LayerPart part{label->second, {}, job_.exposure(kind)};
+            PartInfo part{.label = label->second, .box = {}, .exposure = job_.exposure(kind)};
             if (part.exposure) {
                 part.exposure->part = label->second;
                 part.label = part.exposure->label();
@@ -627,7 +627,8 @@ bool is_ovf(std::string_view bytes) {
 
 LayerFile read_ovf(std::string_view bytes, const std::string& name, ReadLimits& limits,
                    const Execution& execution) {
-    LayerFile file{.path = name, .format = "ovf", .units_mm = 1, .rounding = {.single_precision = true}};
+    LayerFile file = layer_file(name, "ovf", 1);
+    file.rounding.single_precision = true;
     OvfReader(bytes, name, file, limits, execution).read();
     return file;
 }

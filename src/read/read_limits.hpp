@@ -62,26 +62,21 @@ class ReadLimits {
         : ReadLimits(source, options.max_triangles, options.max_memory, options.held) {}
     ReadLimits(const ByteSource& source, const LayerReadOptions& options)
         : ReadLimits(source, 0, options.max_memory, options.held) {
-        layers_ = options.layers;
+        kept_ = options.kept;
     }
     /// A copy counts on by itself.
     ReadLimits(const ReadLimits& other)
         : file_name_(other.file_name_), max_triangles_(other.max_triangles_), asked_(other.asked_),
-          limit_(other.limit_), max_memory_(other.max_memory_), held_(other.held_), layers_(other.layers_),
+          limit_(other.limit_), max_memory_(other.max_memory_), held_(other.held_), kept_(other.kept_),
           triangles_(other.triangles_.load()), bytes_(other.bytes_.load()) {}
 
-    /// Returns whether the reader keeps layers in memory. If not, it parses them again later.
-    [[nodiscard]] bool in_memory() const noexcept { return layers_ == LayersKept::all; }
+    /// Returns whether the reader keeps planes in memory. If not, it parses them again later.
+    [[nodiscard]] bool in_memory() const noexcept { return kept_ == KeptPlanes::all; }
     /// For formats whose layers cannot be parsed one by one.
-    void keep_in_memory() noexcept { layers_ = LayersKept::all; }
-    /// `bytes` is the size of the decompressed file.
-    void keep_in_ample_memory(std::uint64_t bytes) noexcept {
-        if (layers_ == LayersKept::if_ample && !is_tight_for_layers(max_memory_, bytes))
-            keep_in_memory();
-    }
+    void keep_in_memory() noexcept { kept_ = KeptPlanes::all; }
     /// For text formats; `bytes` is the size of the text.
     void keep_text_in_memory(std::uint64_t bytes) noexcept {
-        if (layers_ == LayersKept::if_faster && !is_tight_for_layers(max_memory_, bytes))
+        if (kept_ == KeptPlanes::if_faster && !is_tight_for_layers(max_memory_, bytes))
             keep_in_memory();
     }
 
@@ -161,7 +156,7 @@ class ReadLimits {
     std::uint64_t limit_;
     std::uint64_t max_memory_; ///< what the limit leaves this file
     std::uint64_t held_;
-    LayersKept layers_ = LayersKept::all;
+    KeptPlanes kept_ = KeptPlanes::all;
     std::atomic<std::uint64_t> triangles_{0};
     std::atomic<std::uint64_t> bytes_{0};
 };

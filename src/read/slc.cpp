@@ -8,10 +8,8 @@
 #include "container/xml.hpp"
 #include "core/executor.hpp"
 #include "core/lower_case.hpp"
-#include "read/layer_assembly.hpp"
-#include "read/layer_pieces.hpp"
 #include "read/layer_readers.hpp"
-#include "read/read_limits.hpp"
+#include "read/slice_engine.hpp"
 
 #include <fmt/format.h>
 
@@ -19,6 +17,7 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -135,43 +134,37 @@ struct SlcPiece {
     DroppedContours dropped = {};
     std::size_t end = 0;
     std::optional<double> top = {}; ///< of the part, if the piece has the mark of the end
-
-    void append(SlcPiece&& later, ReadLimits& limits) {
-        append_layers(layers, std::move(later.layers), limits);
-        unclosed.add(later.unclosed);
-        gaps.add(later.gaps);
-        dropped.add(later.dropped);
-        end = later.end;
-        top = later.top;
-    }
 };
 
-/// Properties that all layers share.
-struct SlcLayers {
-    double units_mm = 1;
-    bool open = false; ///< true if contours may be open
-};
-
-/// Reads pieces of a file.
-class SlcPieceReader {
+class SlcFile {
   public:
-    SlcPieceReader(std::string_view bytes, const std::string& name, const SlcLayers& layers,
-                   ReadLimits& limits, const Executor& executor, ProgressMeter& progress)
-        : bytes_(bytes), name_(name), units_mm_(layers.units_mm), open_(layers.open), limits_(limits),
-          executor_(executor), progress_(progress) {}
+    using Piece = SlcPiece;
 
-    /// Reads layers from `begin` up to `limit`, or the mark of the end.
-    [[nodiscard]] SlcPiece read(std::size_t begin, std::size_t limit) const {
+    /// Reads the header.
+    SlcFile(std::string_view bytes, const std::string& name, LayerFile& file) : bytes_(bytes), name_(name) {
+        const std::string_view header = header_of(bytes_);
+        const auto unit = value_of(header, "-unit");
+        const std::string unit_name = unit ? lower_case(*unit) : "";
+        units_mm_ = unit_name.starts_with("inch") ? 25.4 : 1;
+        if (units_mm_ == 1 && !unit_name.starts_with("mm"))
+            file.warnings.push_back(
+                unit ? fmt::format("the unit '{}' is unknown; millimetres are taken", printable(*unit, 20))
+                     : "the header has no unit; millimetres are taken");
+        const std::string type = lower_case(value_of(header, "-type").value_or(""));
+        open_ = type.starts_with("web");
+        file.units_mm = units_mm_;
+        file.parts.push_back({.label = {}, .support = type.starts_with("support")});
+        read_table(bytes_.find(header_end, header.size()) + 1);
+    }
+
+    [[nodiscard]] PieceBegins begins(Executor& /*executor*/) const { return pieces_of(bytes_, first_); }
+    [[nodiscard]] std::size_t end() const { return bytes_.size(); }
+
+    /// Reads layers up to `limit`, or the mark of the end.
+    [[nodiscard]] SlcPiece parse(std::size_t begin, std::size_t limit, const Reading& reading) const {
         SlcBytes in(bytes_, begin, name_);
         SlcPiece piece;
-        std::size_t reported = begin;
-        const auto report_progress = [&] {
-            if (in.at() - reported <= (std::size_t{1} << 22))
-                return;
-            executor_.check_cancelled();
-            progress_.add(in.at() - reported);
-            reported = in.at();
-        };
+        ReadPosition position(reading, begin);
         while (in.at() < limit) {
             const std::size_t at = in.at();
             const double z = in.length("a layer") * units_mm_;
@@ -183,23 +176,73 @@ class SlcPieceReader {
             if (contours > in.left() / (2 * sizeof(std::uint32_t)))
                 in.fail(at, fmt::format("a layer of {} contours", contours),
                         fmt::format("{} bytes are left in the file", in.left()));
-            limits_.make_room(piece.layers, 1, at_byte(at));
+            reading.limits.make_room(piece.layers, 1, at_byte(at));
             RawLayer& layer = piece.layers.emplace_back();
             layer.z = z;
             layer.location = fmt::format("byte {}", at);
             layer.begin = at;
-            for (std::uint32_t i = 0; i < contours; ++i)
-                read_contour(in, layer, piece, report_progress);
+            for (std::uint32_t i = 0; i < contours; ++i) {
+                position.reached(in.at());
+                read_contour(in, layer, piece, reading.limits);
+            }
         }
-        progress_.add(in.at() - reported);
         piece.end = in.at();
-        drop_contents(piece.layers, limits_);
+        position.end(piece.end);
         return piece;
+    }
+    [[nodiscard]] static RawLayer layer(SlcPiece&& piece) { return only_layer(std::move(piece.layers)); }
+
+    void append(SlcPiece&& piece, ReadLimits& limits) {
+        append_layers(all_.layers, std::move(piece.layers), limits);
+        all_.unclosed.add(piece.unclosed);
+        all_.gaps.add(piece.gaps);
+        all_.dropped.add(piece.dropped);
+        all_.end = piece.end;
+        all_.top = piece.top;
+    }
+
+    /// Returns the layers, and warns of irregularities. A layer extends to the next one, because the format
+    /// allows a layer to be omitted if it equals the one below. The last one extends to `top`.
+    [[nodiscard]] std::vector<RawLayer> take_layers(std::vector<std::string>& warnings, double& top) {
+        if (!all_.top)
+            warnings.emplace_back("the file ends without the mark of its end");
+        else if (all_.end != bytes_.size())
+            warnings.push_back(
+                fmt::format("{} bytes follow the mark of the end, from byte {} on; they were left out",
+                            bytes_.size() - all_.end, all_.end));
+        if (all_.layers.empty())
+            SlcBytes(bytes_, all_.end, name_)
+                .fail(all_.end, "no layer", "a slice file must have at least one");
+        all_.unclosed.append_to(warnings);
+        all_.gaps.append_to(warnings);
+        all_.dropped.append_to(warnings);
+        sort_by_height(all_.layers, warnings);
+        top = last_top(warnings);
+        return std::move(all_.layers);
     }
 
   private:
-    template <class Report>
-    void read_contour(SlcBytes& in, RawLayer& layer, SlcPiece& piece, const Report& report_progress) const {
+    /// Reads the sampling table, which follows 256 reserved bytes behind the header.
+    void read_table(std::size_t begin) {
+        SlcBytes in(bytes_, begin, name_);
+        if (in.left() < reserved)
+            in.fail(in.at(), fmt::format("{} bytes", in.left()), "256 reserved bytes must follow the header");
+        in.skip(reserved);
+        const std::size_t table = in.at();
+        const auto entries = in.take<std::uint8_t>("the sampling table");
+        if (entries == 0)
+            in.fail(table, "a sampling table of no entries", "it must have one at least");
+        for (unsigned i = 0; i < entries; ++i) {
+            const double z = in.length("the sampling table") * units_mm_;
+            const double thickness = in.length("the sampling table") * units_mm_;
+            static_cast<void>(in.length("the sampling table")); // line width compensation
+            static_cast<void>(in.take<float>("the sampling table"));
+            table_.push_back({z, thickness});
+        }
+        first_ = in.at();
+    }
+
+    void read_contour(SlcBytes& in, RawLayer& layer, SlcPiece& piece, ReadLimits& limits) const {
         const std::size_t at = in.at();
         const auto position = at_byte(at);
         const auto count = in.take<std::uint32_t>("a contour");
@@ -210,9 +253,8 @@ class SlcPieceReader {
                 fmt::format("{} bytes are left in the file, room for {}", in.left(), in.left() / point_size));
         if (gaps != 0)
             piece.gaps.note(position);
-        limits_.make_room(layer.points, count, position);
+        limits.make_room(layer.points, count, position);
         for (std::uint32_t i = 0; i < count; ++i) {
-            report_progress();
             std::array<float, 2> p{};
             std::memcpy(p.data(), in.data(), sizeof p);
             if (!std::isfinite(p[0]) || !std::isfinite(p[1]))
@@ -223,103 +265,11 @@ class SlcPieceReader {
         }
         const bool returns = layer.returns();
         const bool closed = returns || !open_;
-        if (layer.end_contour(closed, 0, limits_, position, piece.dropped) && closed && !returns)
+        if (layer.end_contour(closed, 0, limits, position, piece.dropped) && closed && !returns)
             piece.unclosed.note(position);
     }
 
-    std::string_view bytes_;
-    const std::string& name_;
-    double units_mm_;
-    bool open_;
-    ReadLimits& limits_;
-    const Executor& executor_;
-    ProgressMeter& progress_;
-};
-
-class SlcReader {
-  public:
-    SlcReader(std::string_view bytes, const std::string& name, LayerFile& file, ReadLimits& limits,
-              const Execution& execution)
-        : bytes_(bytes), name_(name), file_(file), limits_(limits), executor_(execution),
-          progress_(execution, Stage::read, bytes.size()) {}
-
-    void read() {
-        SlcBytes in = read_header();
-        read_pieces(
-            pieces_of(bytes_, in.at()), bytes_.size(), executor_,
-            [&](std::size_t begin, std::size_t limit) {
-                return SlcPieceReader(bytes_, name_, of_layers_, limits_, executor_, progress_)
-                    .read(begin, limit);
-            },
-            [&](SlcPiece&& piece) { all_.append(std::move(piece), limits_); });
-        if (!all_.top)
-            file_.warnings.emplace_back("the file ends without the mark of its end");
-        else if (all_.end != bytes_.size())
-            file_.warnings.push_back(
-                fmt::format("{} bytes follow the mark of the end, from byte {} on; they were left out",
-                            bytes_.size() - all_.end, all_.end));
-        if (all_.layers.empty())
-            in.fail(all_.end, "no layer", "a slice file must have at least one");
-        all_.unclosed.append_to(file_.warnings);
-        all_.gaps.append_to(file_.warnings);
-        all_.dropped.append_to(file_.warnings);
-        place_layers();
-        progress_.finish();
-    }
-
-  private:
-    /// Returns the position of the first layer.
-    SlcBytes read_header() {
-        const std::string_view header = header_of(bytes_);
-        const auto unit = value_of(header, "-unit");
-        const std::string name = unit ? lower_case(*unit) : "";
-        if (name.starts_with("inch")) {
-            file_.units_mm = 25.4;
-        } else {
-            file_.units_mm = 1;
-            if (!name.starts_with("mm"))
-                file_.warnings.push_back(unit ? fmt::format("the unit '{}' is unknown; millimetres are taken",
-                                                            printable(*unit, 20))
-                                              : "the header has no unit; millimetres are taken");
-        }
-        const std::string type = lower_case(value_of(header, "-type").value_or(""));
-        of_layers_ = {file_.units_mm, type.starts_with("web")};
-        file_.parts.emplace_back().support = type.starts_with("support");
-        SlcBytes in(bytes_, bytes_.find(header_end, header.size()) + 1, name_);
-        if (in.left() < reserved)
-            in.fail(in.at(), fmt::format("{} bytes", in.left()), "256 reserved bytes must follow the header");
-        in.skip(reserved);
-        const std::size_t table = in.at();
-        const auto entries = in.take<std::uint8_t>("the sampling table");
-        if (entries == 0)
-            in.fail(table, "a sampling table of no entries", "it must have one at least");
-        for (unsigned i = 0; i < entries; ++i) {
-            const double z = in.length("the sampling table") * file_.units_mm;
-            const double thickness = in.length("the sampling table") * file_.units_mm;
-            static_cast<void>(in.length("the sampling table")); // line width compensation
-            static_cast<void>(in.take<float>("the sampling table"));
-            table_.push_back({z, thickness});
-        }
-        return in;
-    }
-
-    /// Makes the layers. A layer extends to the next one, because the format allows a layer to be omitted if
-    /// it equals the one below. The last one extends to the top of the part.
-    void place_layers() {
-        sort_by_height(all_.layers, file_.warnings);
-        add_layers_by_bottoms(
-            file_, all_.layers, last_top(), limits_, executor_,
-            [bytes = bytes_, &name = name_, layers = of_layers_](std::size_t begin, ReadLimits& limits) {
-                const Execution silent{.threads = 1};
-                const Executor executor(silent);
-                ProgressMeter progress(silent, Stage::read, bytes.size());
-                return only_layer(SlcPieceReader(bytes, name, layers, limits, executor, progress)
-                                      .read(begin, begin + 1)
-                                      .layers);
-            });
-    }
-
-    double last_top() {
+    [[nodiscard]] double last_top(std::vector<std::string>& warnings) const {
         const double bottom = all_.layers.back().z;
         if (all_.top && *all_.top > bottom)
             return *all_.top;
@@ -329,9 +279,9 @@ class SlcReader {
         if (thickness == 0 && all_.layers.size() > 1)
             thickness = bottom - all_.layers[all_.layers.size() - 2].z;
         if (all_.top)
-            file_.warnings.push_back(fmt::format("the end of the part is said to be z = {} mm, not above its "
-                                                 "last layer; that is taken to be {} mm thick",
-                                                 *all_.top, thickness));
+            warnings.push_back(fmt::format("the end of the part is said to be z = {} mm, not above its "
+                                           "last layer; that is taken to be {} mm thick",
+                                           *all_.top, thickness));
         return bottom + thickness;
     }
 
@@ -342,11 +292,9 @@ class SlcReader {
 
     std::string_view bytes_;
     const std::string& name_;
-    LayerFile& file_;
-    ReadLimits& limits_;
-    Executor executor_;
-    ProgressMeter progress_;
-    SlcLayers of_layers_;
+    double units_mm_ = 1;
+    bool open_ = false;     ///< true if contours may be open
+    std::size_t first_ = 0; ///< offset of the first layer
     std::vector<Sampling> table_;
     SlcPiece all_;
 };
@@ -367,8 +315,14 @@ std::string_view other_slc(std::string_view bytes) {
 
 LayerFile read_slc(std::string_view bytes, const std::string& name, ReadLimits& limits,
                    const Execution& execution) {
-    LayerFile file{.path = name, .format = "slc", .rounding = {.single_precision = true}};
-    SlcReader(bytes, name, file, limits, execution).read();
+    LayerFile file = layer_file(name, "slc");
+    file.rounding.single_precision = true;
+    const auto slc = std::make_shared<SlcFile>(bytes, name, file);
+    read_layers_of(*slc, limits, execution, bytes.size());
+    double top = 0;
+    std::vector<RawLayer> layers = slc->take_layers(file.warnings, top);
+    Executor executor(execution);
+    add_layers_by_bottoms(file, layers, top, limits, executor, parsing_again<SlcFile>(slc));
     return file;
 }
 

@@ -163,7 +163,7 @@ class SliceReader {
     void drop_contents(const std::shared_ptr<const SliceText>& text, std::size_t begin) {
         Slice& slice = stack_->slices.back();
         slice.raw.begin = begin;
-        slice.raw.drop_contents(limits_);
+        slice.raw.end_layer(limits_);
         slice.text = text;
     }
 
@@ -623,7 +623,7 @@ std::size_t Slice::points() const {
     if (!text)
         return raw.points.size();
     std::size_t points = 0;
-    for (const RawLayer::Run& run : raw.runs())
+    for (const RawLayer::Run& run : raw.runs)
         points += run.end - run.begin;
     return points;
 }

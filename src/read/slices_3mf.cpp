@@ -5,6 +5,7 @@
 #include "lamella/mesh/transform.hpp"
 
 #include "container/text_position.hpp"
+#include "contour/plane_sums.hpp"
 #include "core/executor.hpp"
 #include "core/farthest.hpp"
 #include "read/layer_assembly.hpp"
@@ -114,21 +115,19 @@ struct PlanesOfSlice {
     const Slice* slice;
     std::size_t begin;
     std::size_t end;
+    Layer layer = {}; ///< if layers are kept in memory
 };
 
-/// A part, and its slices that are on planes, ascending.
-struct DrawnPart {
-    Placed placed;
-    std::vector<PlanesOfSlice> drawn;
+/// The slices of a part that are on planes, ascending.
+using DrawnSlices = std::vector<PlanesOfSlice>;
 
-    /// Returns the slice on a plane, or null.
-    [[nodiscard]] const Slice* on(std::size_t plane) const {
-        const auto next =
-            std::upper_bound(drawn.begin(), drawn.end(), plane,
-                             [](std::size_t at, const PlanesOfSlice& slice) { return at < slice.begin; });
-        return next == drawn.begin() || plane >= std::prev(next)->end ? nullptr : std::prev(next)->slice;
-    }
-};
+/// Returns the slice on a plane, or null.
+const PlanesOfSlice* slice_on(const DrawnSlices& drawn, std::size_t plane) {
+    const auto next =
+        std::upper_bound(drawn.begin(), drawn.end(), plane,
+                         [](std::size_t at, const PlanesOfSlice& slice) { return at < slice.begin; });
+    return next == drawn.begin() || plane >= std::prev(next)->end ? nullptr : &*std::prev(next);
+}
 
 class PackageReader {
   public:
@@ -319,24 +318,72 @@ class PackageReader {
         for (std::size_t k = 0; k < placed_.size(); ++k) {
             limits_.make_room(file_.parts, 1, place_of(k));
             limits_.add_bytes_at(placed_[k].label.size(), place_of(k));
-            file_.parts.push_back(
-                {.label = labels.of(placed_[k].label), .layers = {}, .support = placed_[k].support});
+            file_.parts.push_back({.label = labels.of(placed_[k].label), .support = placed_[k].support});
         }
         labels.append_to(file_.warnings);
         check_part_planes(file_, heights.size() - 1, std::max(points, zip_.unpacked()));
+        add_planes(heights);
         std::uint64_t left = 64 * (points + heights.size() + (std::uint64_t{1} << 20));
-        if (!limits_.in_memory())
-            return make_stream(heights, left);
-        for (std::size_t k = 0; k < placed_.size(); ++k)
-            add_part(k, heights, left);
+        PlaneSums sums(placed_.size());
+        std::vector<DrawnSlices> drawn;
+        std::uint64_t largest = 0; // points of the largest slices of all parts
+        for (std::size_t k = 0; k < placed_.size(); ++k) {
+            DrawnSlices& slices = drawn.emplace_back(drawn_slices(k, heights, left));
+            sums.add_contours(k, place(placed_[k], slices));
+            std::uint64_t of_part = 0;
+            for (const PlanesOfSlice& some : slices) {
+                of_part = std::max<std::uint64_t>(of_part, some.slice->points());
+                for (std::size_t i = some.begin; i < some.end; ++i)
+                    file_.contents[i].points += some.slice->points();
+            }
+            largest += of_part;
+        }
+        sums.put(file_);
+        if (limits_.in_memory()) {
+            for (const DrawnSlices& slices : drawn)
+                for (const PlanesOfSlice& slice : slices)
+                    file_.bytes += sizeof slice + slice.layer.offsets.size() * sizeof(std::uint64_t) +
+                                   slice.layer.points.size() * sizeof(Point2);
+            file_.make = [drawn = std::move(drawn)](std::size_t plane) {
+                ScanVectors vectors;
+                for (const DrawnSlices& slices : drawn) {
+                    const PlanesOfSlice* const slice = slice_on(slices, plane);
+                    vectors.add(slice == nullptr ? Layer() : slice->layer, PointArray());
+                }
+                return vectors;
+            };
+            return;
+        }
+        file_.bytes = limits_.bytes();
+        file_.plane_bytes = bytes_of_plane(largest);
+        file_.spare_bytes = limits_.bytes_left();
+        file_.make = [drawn = std::move(drawn), placed = std::move(placed_), name = zip_.name(),
+                      &limits = limits_](std::size_t plane) {
+            ScanVectors vectors;
+            for (std::size_t k = 0; k < placed.size(); ++k) {
+                const PlanesOfSlice* const slice = slice_on(drawn[k], plane);
+                vectors.add(slice == nullptr ? Layer() : placed_layer(placed[k], *slice->slice, limits, name),
+                            PointArray());
+            }
+            return vectors;
+        };
+    }
+
+    /// Adds planes without contours.
+    void add_planes(const std::vector<double>& heights) {
+        const std::size_t planes = heights.size() - 1;
+        limits_.add_bytes(planes * (sizeof(Layer) + of_empty_layer + sizeof(PlaneContent)));
+        file_.contents.resize(planes);
+        for (std::size_t i = 0; i < planes; ++i)
+            file_.planes.push_back(
+                {.index = i, .z = middle(heights, i), .bottom = heights[i], .top = heights[i + 1]});
     }
 
     /// Finds the slice on each plane of a part. `left` is the number of points that parts may still have.
-    std::vector<PlanesOfSlice> drawn_slices(std::size_t index, const std::vector<double>& heights,
-                                            std::uint64_t& left) {
+    DrawnSlices drawn_slices(std::size_t index, const std::vector<double>& heights, std::uint64_t& left) {
         const Placed& part = placed_[index];
         const std::vector<Slice>& slices = part.stack->slices;
-        std::vector<PlanesOfSlice> drawn;
+        DrawnSlices drawn;
         std::size_t next = 0;
         std::size_t last_slice = slices.size();
         limits_.make_room(drawn, heights.size() - 1, place_of(index));
@@ -351,7 +398,7 @@ class PackageReader {
                 continue;
             }
             const Slice& slice = slices[next];
-            drawn.push_back({&slice, i, i + 1});
+            drawn.push_back({&slice, i, i + 1, {}});
             if (slice.points() > left)
                 throw Error(ErrorKind::input,
                             fmt::format("{}: found the same slices placed so often that they would have more "
@@ -368,101 +415,28 @@ class PackageReader {
         return heights[plane] + (heights[plane + 1] - heights[plane]) / 2;
     }
 
-    /// Appends layers without contours.
-    static void append_planes(const std::vector<double>& heights, LayerStack& layers) {
-        for (std::size_t i = 0; i + 1 < heights.size(); ++i)
-            layers.push_back(
-                {.index = i, .z = middle(heights, i), .bottom = heights[i], .top = heights[i + 1]});
-    }
-
-    void add_part(std::size_t index, const std::vector<double>& heights, std::uint64_t& left) {
-        const Placed& part = placed_[index];
-        LayerStack& layers = file_.parts[index].layers;
-        limits_.make_room(layers, heights.size() - 1, place_of(index));
-        limits_.add_bytes_at((heights.size() - 1) * of_empty_layer, place_of(index));
-        append_planes(heights, layers);
-        const std::vector<PlanesOfSlice> drawn = drawn_slices(index, heights, left);
-        executor_.for_chunks(drawn.size(), 1, [&](std::uint64_t i, std::uint64_t, unsigned) {
-            const Layer shared = placed_layer(part, drawn[i].slice->raw, zip_.name());
-            for (std::size_t k = drawn[i].begin; k < drawn[i].end; ++k) {
-                const Layer empty = std::exchange(layers[k], shared); // shares the points
-                layers[k].index = empty.index;
-                layers[k].z = empty.z;
-                layers[k].bottom = empty.bottom;
-                layers[k].top = empty.top;
-            }
-        });
-        executor_.check_cancelled();
-        limits_.give_back(0, drawn.capacity() * sizeof(PlanesOfSlice));
-    }
-
-    /// Gives the file a stream that reads slices again.
-    void make_stream(const std::vector<double>& heights, std::uint64_t& left) {
-        const std::size_t planes = heights.size() - 1;
-        limits_.add_bytes(planes * (sizeof(Layer) + of_empty_layer + sizeof(PlaneContent)));
-        limits_.add_bytes(placed_.size() * sizeof(DrawnPart));
-        LayerStream stream{.hatch_lines = std::vector<std::uint64_t>(placed_.size()),
-                           .contents = std::vector<PlaneContent>(planes)};
-        append_planes(heights, stream.planes);
-        std::vector<DrawnPart> parts;
-        parts.reserve(placed_.size());
-        for (std::size_t k = 0; k < placed_.size(); ++k) {
-            parts.push_back({placed_[k], drawn_slices(k, heights, left)});
-            Box3 box = box_of(parts.back());
-            if (!box.empty()) {
-                for (const Point3& corner : {box.min, box.max})
-                    stream.largest_coordinate =
-                        std::max({stream.largest_coordinate, std::abs(corner.x), std::abs(corner.y)});
-                box.min.z = heights.front();
-                box.max.z = heights.back();
-            }
-            stream.boxes.push_back(box);
-            for (const PlanesOfSlice& drawn : parts.back().drawn)
-                if (drawn.slice->points() > 0)
-                    for (std::size_t i = drawn.begin; i < drawn.end; ++i)
-                        stream.contents[i].contours = true;
-        }
-        std::uint64_t points = 0; // of the largest slices of all parts
-        for (const DrawnPart& part : parts) {
-            std::uint64_t largest = 0;
-            for (const PlanesOfSlice& drawn : part.drawn)
-                largest = std::max<std::uint64_t>(largest, drawn.slice->points());
-            points += largest;
-        }
-        stream.plane_bytes = bytes_of_plane(points);
-        stream.bytes = limits_.bytes();
-        stream.spare_bytes = limits_.bytes_left();
-        stream.parse = [parts = std::move(parts), name = zip_.name(), &limits = limits_](std::size_t plane) {
-            ScanVectors vectors;
-            for (const DrawnPart& part : parts) {
-                const Slice* const slice = part.on(plane);
-                vectors.add(slice == nullptr ? Layer() : placed_layer(part.placed, *slice, limits, name),
-                            PointArray());
-            }
-            return vectors;
-        };
-        file_.stream = std::make_shared<const LayerStream>(std::move(stream));
-    }
-
-    /// Returns the box of the points of a part at a height of 0.
-    Box3 box_of(const DrawnPart& part) {
-        const auto& m = part.placed.placement.linear;
+    /// Makes the layers of the slices of a part if layers are kept in memory. Returns the box of their points
+    /// at a height of 0.
+    Box3 place(const Placed& part, DrawnSlices& slices) {
+        const auto& m = part.placement.linear;
         // If each coordinate depends on only one of the slice, the extremes of points are those of boxes,
         // after any rounding.
         const bool by_boxes = (m[0][0] == 0 || m[0][1] == 0) && (m[1][0] == 0 || m[1][1] == 0);
         std::vector<Box3> boxes(executor_.workers());
-        executor_.for_chunks(part.drawn.size(), 1, [&](std::uint64_t i, std::uint64_t, unsigned worker) {
-            const Slice& slice = *part.drawn[i].slice;
-            const auto add = [&](const Point2& p) {
-                boxes[worker].add(Point3{p.x, p.y, 0});
-            };
-            if (by_boxes && slice.text)
-                for (const RawLayer::Run& run : slice.raw.runs())
-                    for (const Point3& corner : {run.box.min, run.box.max})
-                        add(placed_point(part.placed, corner.x, corner.y, zip_.name()));
-            else
-                for (const Point2& p : placed_layer(part.placed, slice, limits_, zip_.name()).points)
-                    add(p);
+        executor_.for_chunks(slices.size(), 1, [&](std::uint64_t i, std::uint64_t, unsigned worker) {
+            const Slice& slice = *slices[i].slice;
+            if (by_boxes && slice.text) {
+                for (const RawLayer::Run& run : slice.raw.runs)
+                    for (const Point3& corner : {run.box.min, run.box.max}) {
+                        const Point2 p = placed_point(part, corner.x, corner.y, zip_.name());
+                        boxes[worker].add(Point3{p.x, p.y, 0});
+                    }
+                return;
+            }
+            Layer layer = placed_layer(part, slice, limits_, zip_.name());
+            boxes[worker].add(PlaneSums::flat_box(layer.points.span()));
+            if (limits_.in_memory())
+                slices[i].layer = std::move(layer);
         });
         executor_.check_cancelled();
         Box3 box;
@@ -495,11 +469,9 @@ bool is_3mf(const ZipReader& zip) {
 }
 
 LayerFile read_slices_3mf(const ZipReader& package, ReadLimits& limits, const Execution& execution) {
-    LayerFile file{.path = package.name(),
-                   .format = "3mf",
-                   .units_mm = 1,
-                   .rounding = text_rounding,
-                   .warnings = package.counted_warnings()};
+    LayerFile file = layer_file(package.name(), "3mf", 1);
+    file.rounding = text_rounding;
+    file.warnings = package.counted_warnings();
     PackageReader(package, file, limits, execution).read();
     return file;
 }

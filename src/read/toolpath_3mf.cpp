@@ -416,8 +416,7 @@ class ToolpathReader {
                 [&](std::size_t i, std::size_t) {
                     executor_.check_cancelled();
                     ToolpathParts::Piece piece = parts.read(i, limits_, executor_);
-                    if (!limits_.in_memory())
-                        piece.raw.drop_contents(limits_);
+                    piece.raw.end_layer(limits_);
                     return piece;
                 },
                 [&](ToolpathParts::Piece&& piece) {
@@ -449,13 +448,13 @@ class ToolpathReader {
             return part_of(kind, name->second, *profiles[kind.profile]);
         });
         if (file_.parts.empty())
-            file_.parts.push_back({labels.empty() ? std::string() : read_labels.of(labels.front()), {}});
+            file_.parts.push_back({.label = labels.empty() ? std::string() : read_labels.of(labels.front())});
         read_labels.append_to(file_.warnings);
     }
 
-    static LayerPart part_of(const SegmentKind& kind, const std::string& label,
-                             const Toolpath::Profile& profile) {
-        LayerPart part{label, {}, profile.exposure};
+    static PartInfo part_of(const SegmentKind& kind, const std::string& label,
+                            const Toolpath::Profile& profile) {
+        PartInfo part{.label = label, .box = {}, .exposure = profile.exposure};
         if (!part.exposure)
             return part;
         Exposure& exposure = *part.exposure;
@@ -503,7 +502,8 @@ bool is_toolpath_3mf(const ZipReader& package) {
 }
 
 LayerFile read_toolpath_3mf(const ZipReader& package, ReadLimits& limits, const Execution& execution) {
-    LayerFile file{.path = package.name(), .format = "3mf-toolpath", .warnings = package.counted_warnings()};
+    LayerFile file = layer_file(package.name(), "3mf-toolpath");
+    file.warnings = package.counted_warnings();
     ToolpathReader(package, file, limits, execution).read();
     return file;
 }

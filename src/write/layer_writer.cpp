@@ -320,6 +320,26 @@ Box3 part_box(std::span<const Layer> layers, std::span<const PointArray> hatches
     return box;
 }
 
+LayerFileInfo info_of(const PlaneSource& source) {
+    if (source.planes.empty())
+        throw Error(ErrorKind::input, fmt::format("{}: holds no layers", source.path));
+    LayerFileInfo info{.box = {},
+                       .layers = source.planes.size(),
+                       .bottom = source.planes.front().bottom,
+                       .parts = source.parts,
+                       .rule = source.rule};
+    for (PartInfo& part : info.parts) {
+        if (part.label.empty())
+            part.label = PartInfo{}.label;
+        info.box.add(part.box);
+    }
+    if (info.box.empty())
+        info.box.add(Point3{});
+    info.box.min.z = source.planes.front().bottom;
+    info.box.max.z = source.planes.back().top;
+    return info;
+}
+
 std::span<const LayerFormat> layer_formats() noexcept {
     return formats;
 }

@@ -51,7 +51,8 @@ std::string outcome(const std::string& bytes, unsigned threads, std::uint64_t ma
         const LayerFile file = read_layers(std::as_bytes(std::span(bytes)), "layers",
                                            {.max_memory = max_memory}, {.threads = threads});
         std::string text = fmt::format("{} {} {}\n", file.format, file.units_mm, file.rounding.step_mm);
-        for (const LayerPart& part : file.parts) {
+        const std::vector<LayerPart> parts = file.in_memory();
+        for (const LayerPart& part : parts) {
             text += fmt::format("part {} of {} layers\n", part.label, part.layers.size());
             for (const Layer& layer : part.layers)
                 text += fmt::format("{} {} {} {} {:x}\n", layer.index, layer.z, layer.bottom, layer.top,
@@ -73,7 +74,7 @@ class LayerReading : public testing::TestWithParam<std::string_view> {
         const LayerFileInfo info{.box = part_box(layers),
                                  .layers = layers.size(),
                                  .bottom = layers.front().bottom,
-                                 .parts = {{"wheels", part_box(layers), {}, false}},
+                                 .parts = {{.label = "wheels", .box = part_box(layers)}},
                                  .rule = PlaneRule::section_above};
         const std::string path = folder.file("layers");
         write_layers(path, layer_format(format, ""), layers, info);
@@ -101,30 +102,30 @@ TEST_P(LayerReading, GivesTheSameLayersForAnyNumberOfThreads) {
 
 TEST_P(LayerReading, GivesTheSameLayersIfTheyAreNotInMemory) {
     const std::string bytes = written(GetParam());
-    const auto read = [&](LayersKept kept, unsigned threads) {
-        return read_layers(std::as_bytes(std::span(bytes)), "layers", {.layers = kept}, {.threads = threads});
+    const auto read = [&](KeptPlanes kept, unsigned threads) {
+        return read_layers(std::as_bytes(std::span(bytes)), "layers", {.kept = kept}, {.threads = threads});
     };
-    const LayerFile held = read(LayersKept::all, 1);
-    ASSERT_FALSE(held.stream);
+    const LayerFile held = read(KeptPlanes::all, 1);
+    ASSERT_EQ(held.plane_bytes, 0U);
+    const std::vector<LayerPart> parts = held.in_memory();
     for (const unsigned threads : {1U, 2U, 7U}) {
-        const LayerFile file = read(LayersKept::none, threads);
-        ASSERT_TRUE(file.stream);
+        const LayerFile file = read(KeptPlanes::none, threads);
+        ASSERT_GT(file.plane_bytes, 0U);
         EXPECT_EQ(file.warnings, held.warnings);
         EXPECT_EQ(file.rounding, held.rounding);
         ASSERT_EQ(file.parts.size(), held.parts.size());
         for (std::size_t i = 0; i < file.parts.size(); ++i) {
-            const LayerPart& part = held.parts[i];
-            EXPECT_EQ(file.parts[i].label, part.label);
-            EXPECT_EQ(file.hatch_lines(i), part.hatch_lines());
-            const Box3 box = part_box(part.layers, part.hatches);
-            EXPECT_EQ(file.stream->boxes[i].min, box.min);
-            EXPECT_EQ(file.stream->boxes[i].max, box.max);
+            const Box3 box = part_box(parts[i].layers, parts[i].hatches);
+            for (const LayerFile* const any : {&file, &held}) {
+                EXPECT_EQ(any->parts[i].label, parts[i].label);
+                EXPECT_EQ(any->parts[i].hatch_lines, 0U);
+                EXPECT_EQ(any->parts[i].box, box);
+            }
         }
-        const std::vector<PlaneContent> contents[2] = {file.contents(), held.contents()};
-        ASSERT_EQ(file.planes().size(), held.planes().size());
-        for (std::size_t i = 0; i < file.planes().size(); ++i) {
-            EXPECT_EQ(contents[0][i].contours, contents[1][i].contours);
-            EXPECT_EQ(contents[0][i].hatch_lines, contents[1][i].hatch_lines);
+        ASSERT_EQ(file.planes.size(), held.planes.size());
+        for (std::size_t i = 0; i < file.planes.size(); ++i) {
+            EXPECT_EQ(file.contents[i].points, held.contents[i].points);
+            EXPECT_EQ(file.contents[i].hatch_lines, held.contents[i].hatch_lines);
             const ScanVectors planes[2] = {file.plane(i), held.plane(i)};
             ASSERT_EQ(content_hash(planes[0]), content_hash(planes[1])) << i;
             for (std::size_t k = 0; k < file.parts.size(); ++k) {

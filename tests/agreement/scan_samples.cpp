@@ -28,7 +28,7 @@ void write_samples(const std::string& folder) {
     LayerFileInfo info{.box = box, .layers = layers.size(), .bottom = layers.front().bottom};
     info.parts.clear();
     for (const Exposure& exposure : exposures(strategy, "rook"))
-        info.parts.push_back({"rook " + exposure.name(), info.box, exposure});
+        info.parts.push_back({.label = "rook " + exposure.name(), .box = info.box, .exposure = exposure});
     for (std::size_t i = 0; i < layers.size(); ++i) {
         const std::vector<ScanLayer> below(layers.rend() - static_cast<std::ptrdiff_t>(i), layers.rend());
         const std::vector<ScanLayer> above(layers.begin() + static_cast<std::ptrdiff_t>(i) + 1, layers.end());

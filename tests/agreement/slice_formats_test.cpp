@@ -116,7 +116,7 @@ LayerFileInfo info_of(const std::vector<LayerPart>& parts) {
     info.box.add(Point3{60, 60, parts.front().layers.back().top});
     info.parts.clear();
     for (std::size_t i = 0; i < parts.size(); ++i)
-        info.parts.push_back({"part \"" + std::to_string(i) + "\" <&", info.box});
+        info.parts.push_back({.label = "part \"" + std::to_string(i) + "\" <&", .box = info.box});
     return info;
 }
 
@@ -138,10 +138,10 @@ std::string written(const char* format, const std::vector<LayerPart>& parts,
     info.rule = rule;
     LayerWriteOptions options;
     options.page.viewer = "<!--lamella-data-->";
-    const LayerFile file{.path = {}, .format = {}, .parts = parts};
+    const PlaneSource source = source_of(parts);
     std::vector<ScanVectors> planes;
     for (std::size_t i = 0; i < info.layers; ++i)
-        planes.push_back(file.plane(i));
+        planes.push_back(source.plane(i));
     std::vector<std::string> told =
         write_layers(folder.file("out"), layer_format(format, ""), planes, info, options);
     if (warnings != nullptr)
@@ -161,12 +161,12 @@ TEST(SliceFormats, ComeBackAtTheirResolution) {
         for (const std::size_t parts : {1U, 3U}) {
             const auto original = random_parts(7, parts, 12);
             const LayerFile back = read(written(format.format, original));
+            const std::vector<LayerPart> back_parts = back.in_memory();
             EXPECT_EQ(back.format, format.format);
             for (const std::string& warning : back.warnings)
                 EXPECT_NE(warning.find("contours are open"), std::string::npos) << format.format << warning;
             ASSERT_EQ(back.parts.size(), format.parts ? parts : 1) << format.format;
-            const LayerFile whole{.path = {}, .format = {}, .parts = original};
-            LayerPart merged{.label = {}, .layers = whole.merged()};
+            LayerPart merged{.label = {}, .layers = source_of(original).merged()};
             for (std::size_t i = 0; i < merged.layers.size(); ++i) {
                 std::vector<Point2> hatches;
                 for (const LayerPart& part : original)
@@ -176,16 +176,16 @@ TEST(SliceFormats, ComeBackAtTheirResolution) {
             for (std::size_t part = 0; part < back.parts.size(); ++part) {
                 const LayerPart& expected_part = format.parts ? original[part] : merged;
                 const LayerStack& expected = expected_part.layers;
-                ASSERT_EQ(back.parts[part].layers.size(), expected.size()) << format.format;
+                ASSERT_EQ(back_parts[part].layers.size(), expected.size()) << format.format;
                 for (std::size_t i = 0; i < expected.size(); ++i) {
-                    const Layer& found = back.parts[part].layers[i];
+                    const Layer& found = back_parts[part].layers[i];
                     EXPECT_EQ(content_hash(found), content_hash(kept(expected[i], format)))
                         << format.format << ", part " << part << ", layer " << i;
                     const double tolerance = format.exact ? 0 : format.height;
                     EXPECT_NEAR(found.z, expected[i].z, tolerance) << format.format;
                     EXPECT_NEAR(found.bottom, expected[i].bottom, tolerance) << format.format;
                     EXPECT_NEAR(found.top, expected[i].top, tolerance) << format.format;
-                    const std::span<const Point2> hatches = back.parts[part].hatches_of(i);
+                    const std::span<const Point2> hatches = back_parts[part].hatches_of(i);
                     const PointArray& lines = expected_part.hatches[i];
                     ASSERT_EQ(hatches.size(), format.hatches ? lines.size() : 0);
                     for (std::size_t k = 0; k < hatches.size(); ++k) {
@@ -230,7 +230,7 @@ TEST(SliceFormats, KeepTheLabelsOfParts) {
 TEST(SliceFormats, SayWhatTheyLeaveOut) {
     const auto parts = random_parts(7, 1, 12);
     std::uint64_t chains = 0;
-    const std::uint64_t hatches = parts.front().hatch_lines();
+    const std::uint64_t hatches = source_of(parts).hatch_lines();
     for (const Layer& layer : parts.front().layers)
         chains += layer.open_chains();
     ASSERT_GT(chains, 1U);
@@ -260,12 +260,12 @@ struct Outcome {
     std::string error;
 };
 
-Outcome outcome(std::string_view bytes, LayersKept layers, unsigned threads) {
+Outcome outcome(std::string_view bytes, KeptPlanes kept, unsigned threads) {
     Outcome outcome;
     try {
         outcome.file =
-            read_layers(std::as_bytes(std::span(bytes)), "test", {.layers = layers}, {.threads = threads});
-        for (std::size_t i = 0; i < outcome.file.planes().size(); ++i)
+            read_layers(std::as_bytes(std::span(bytes)), "test", {.kept = kept}, {.threads = threads});
+        for (std::size_t i = 0; i < outcome.file.planes.size(); ++i)
             outcome.planes.push_back(outcome.file.plane(i));
     } catch (const Error& error) {
         outcome.error = error.what();
@@ -275,8 +275,8 @@ Outcome outcome(std::string_view bytes, LayersKept layers, unsigned threads) {
 
 // The same with layers in memory and without. Returns whether the latter was possible.
 bool expect_same_stream(std::string_view bytes, unsigned threads) {
-    const Outcome held = outcome(bytes, LayersKept::all, 1);
-    const Outcome passed = outcome(bytes, LayersKept::none, threads);
+    const Outcome held = outcome(bytes, KeptPlanes::all, 1);
+    const Outcome passed = outcome(bytes, KeptPlanes::none, threads);
     EXPECT_EQ(passed.error, held.error);
     EXPECT_EQ(passed.file.warnings, held.file.warnings);
     EXPECT_EQ(passed.file.guess, held.file.guess);
@@ -285,13 +285,19 @@ bool expect_same_stream(std::string_view bytes, unsigned threads) {
     EXPECT_EQ(passed.planes.size(), held.planes.size());
     if (testing::Test::HasFailure())
         return false;
+    const std::vector<LayerPart> parts =
+        held.error.empty() ? held.file.in_memory() : std::vector<LayerPart>();
     for (std::size_t i = 0; i < held.file.parts.size(); ++i) {
-        const LayerPart& part = held.file.parts[i];
+        const PartInfo& part = held.file.parts[i];
         EXPECT_EQ(passed.file.parts[i].label, part.label);
         EXPECT_EQ(passed.file.parts[i].exposure.has_value(), part.exposure.has_value());
-        EXPECT_EQ(passed.file.hatch_lines(i), part.hatch_lines());
-        if (passed.file.stream) {
-            EXPECT_EQ(passed.file.stream->boxes[i], part_box(part.layers, part.hatches));
+        std::uint64_t hatch_lines = 0;
+        for (const PointArray& hatches : parts[i].hatches)
+            hatch_lines += hatches.size() / 2;
+        const Box3 box = part_box(parts[i].layers, parts[i].hatches);
+        for (const LayerFile* const file : {&passed.file, &held.file}) {
+            EXPECT_EQ(file->parts[i].hatch_lines, hatch_lines);
+            EXPECT_EQ(file->parts[i].box, box);
         }
     }
     for (std::size_t i = 0; i < held.planes.size(); ++i) {
@@ -302,12 +308,12 @@ bool expect_same_stream(std::string_view bytes, unsigned threads) {
             EXPECT_EQ(std::tie(one.index, one.z, one.bottom, one.top),
                       std::tie(other.index, other.z, other.bottom, other.top));
         }
-        const Layer& plane = passed.file.planes()[i];
-        const Layer& other = held.file.planes()[i];
+        const Layer& plane = passed.file.planes[i];
+        const Layer& other = held.file.planes[i];
         EXPECT_EQ(std::tie(plane.index, plane.z, plane.bottom, plane.top),
                   std::tie(other.index, other.z, other.bottom, other.top));
     }
-    return passed.file.stream != nullptr;
+    return passed.file.plane_bytes > 0;
 }
 
 // An input error, or layers in normal form.
@@ -315,9 +321,10 @@ void expect_harmless(std::string_view bytes) {
     expect_same_stream(bytes, 1);
     try {
         const LayerFile file = read(bytes);
+        const std::vector<LayerPart> parts = file.in_memory();
         ASSERT_FALSE(file.parts.empty());
-        for (const LayerPart& part : file.parts) {
-            ASSERT_EQ(part.layers.size(), file.parts.front().layers.size());
+        for (const LayerPart& part : parts) {
+            ASSERT_EQ(part.layers.size(), parts.front().layers.size());
             for (const Layer& layer : part.layers)
                 ASSERT_TRUE(in_normal_form(layer));
         }
@@ -340,15 +347,13 @@ class CountedPlanes {
   public:
     // Returns the file; `fail_at` is a plane that cannot be parsed.
     LayerFile counted(LayerFile file, std::size_t fail_at) {
-        LayerStream stream = *file.stream;
-        stream.parse = [this, file, fail_at](std::size_t position) {
+        file.make = [this, make = std::move(file.make), fail_at](std::size_t position) {
             if (position == fail_at)
                 throw Error(ErrorKind::input, "no such plane");
-            ScanVectors plane = file.stream->parse(position);
+            ScanVectors plane = make(position);
             note(plane);
             return plane;
         };
-        file.stream = std::make_shared<const LayerStream>(std::move(stream));
         return file;
     }
     std::size_t most() const { return most_; }
@@ -374,15 +379,7 @@ constexpr std::size_t no_plane = many_planes;
 LayerFile without_layers(CountedPlanes& planes, std::size_t fail_at) {
     const std::string bytes = written("cli", random_parts(9, 1, many_planes));
     return planes.counted(
-        read_layers(std::as_bytes(std::span(bytes)), "test.cli", {.layers = LayersKept::none}), fail_at);
-}
-
-LayerFileInfo info_of_one_part(const LayerFile& file) {
-    LayerFileInfo info{.box = file.stream->boxes.front(),
-                       .layers = file.planes().size(),
-                       .bottom = file.planes().front().bottom};
-    info.parts.front().box = info.box;
-    return info;
+        read_layers(std::as_bytes(std::span(bytes)), "test.cli", {.kept = KeptPlanes::none}), fail_at);
 }
 
 TEST(SliceFormats, KeepFewPlanesInMemoryWhileTheyAreWritten) {
@@ -391,8 +388,8 @@ TEST(SliceFormats, KeepFewPlanesInMemoryWhileTheyAreWritten) {
         CountedPlanes planes;
         const LayerFile file = without_layers(planes, no_plane);
         const auto writer =
-            open_layer_writer(folder.file("out"), layer_format(format, ""), info_of_one_part(file), {});
-        write_planes(*writer, file.planes().size(), [&](std::size_t i) { return file.plane(i); },
+            open_layer_writer(folder.file("out"), layer_format(format, ""), info_of(file), {});
+        write_planes(*writer, file.planes.size(), [&](std::size_t i) { return file.plane(i); },
                      {.threads = 3});
         writer->finish();
         EXPECT_LE(planes.most(), 9U) << format;
@@ -404,8 +401,8 @@ TEST(SliceFormats, KeepFewPlanesInMemoryWhileTheyAreScanned) {
     ScanStrategy strategy;
     CountedPlanes planes;
     const LayerFile file = without_layers(planes, no_plane);
-    const FileResult result = scan_layers(folder.file("job.cli"), layer_format("cli", ""), file,
-                                          info_of_one_part(file), strategy, {}, {.threads = 3});
+    const FileResult result =
+        scan_layers(folder.file("job.cli"), layer_format("cli", ""), file, strategy, {}, {.threads = 3});
     EXPECT_EQ(result.layers.size(), many_planes);
     EXPECT_LE(planes.most(), 60U); // with neighbours
 }
@@ -414,8 +411,8 @@ TEST(SliceFormats, LeaveNoOutputIfAPlaneCannotBeParsedAgain) {
     const TemporaryFolder folder;
     CountedPlanes planes;
     const LayerFile file = without_layers(planes, many_planes - 1);
-    EXPECT_THROW(static_cast<void>(scan_layers(folder.file("job.cli"), layer_format("cli", ""), file,
-                                               info_of_one_part(file), {}, {}, {.threads = 3})),
+    EXPECT_THROW(static_cast<void>(scan_layers(folder.file("job.cli"), layer_format("cli", ""), file, {}, {},
+                                               {.threads = 3})),
                  Error);
     EXPECT_FALSE(std::filesystem::exists(folder.file("job.cli")));
 }

@@ -31,10 +31,11 @@ inline void require_whole(const Layer& layer, std::span<const Point2> hatches = 
 
 /// Requires layers in normal form, or scan vectors.
 inline void require_sound(const LayerFile& file) {
+    const std::vector<LayerPart> parts = file.in_memory();
     require(!file.parts.empty());
-    for (const LayerPart& part : file.parts) {
+    for (const LayerPart& part : parts) {
         require(part.hatches.empty() || part.hatches.size() == part.layers.size());
-        require(!part.layers.empty() && part.layers.size() == file.parts.front().layers.size());
+        require(!part.layers.empty() && part.layers.size() == parts.front().layers.size());
         for (std::size_t i = 0; i < part.layers.size(); ++i) {
             const Layer& layer = part.layers[i];
             require_whole(layer, part.hatches_of(i));

@@ -1,7 +1,5 @@
 #include "lamella/pipeline/layer_files.hpp"
 
-#include "fixtures/expect_error.hpp"
-#include "fixtures/layers.hpp"
 #include "fixtures/rounds.hpp"
 
 #include <gtest/gtest.h>
@@ -30,13 +28,13 @@ std::string text_of(bool vectors) {
     return text + "$$GEOMETRYEND\n";
 }
 
-LayerFile read(bool vectors, LayersKept kept) {
+LayerFile read(bool vectors, KeptPlanes kept) {
     const std::string text = text_of(vectors);
-    return read_layers(std::as_bytes(std::span(text)), "a.cli", {.layers = kept}, {.threads = 1});
+    return read_layers(std::as_bytes(std::span(text)), "a.cli", {.kept = kept}, {.threads = 1});
 }
 
 TEST(LayerFileFigures, AreSumsOfTheLayers) {
-    const FileFigures figures = measure(read(true, LayersKept::all));
+    const FileFigures figures = measure(read(true, KeptPlanes::all));
     EXPECT_EQ(figures.contours.contours, std::size_t{planes});
     EXPECT_EQ(figures.contours.points, std::size_t{4 * planes});
     EXPECT_EQ(figures.contours.open_chains, 0U);
@@ -53,15 +51,15 @@ TEST(LayerFileFigures, AreSumsOfTheLayers) {
     EXPECT_EQ(figures.exposures[0].figures.vectors, std::uint64_t{2 * planes});
     EXPECT_NEAR(figures.exposures[0].figures.marked_mm, length, 1e-9);
     EXPECT_NEAR(figures.exposures[0].figures.jumped_mm, planes * 0.01, 1e-9);
-    EXPECT_TRUE(measure(read(false, LayersKept::all)).exposures.empty());
+    EXPECT_TRUE(measure(read(false, KeptPlanes::all)).exposures.empty());
 }
 
 TEST(LayerFileFigures, AreTheSameForAnyNumberOfThreadsAndIfLayersAreNotInMemory) {
-    const FileFigures expected = measure(read(true, LayersKept::all), {.threads = 1});
-    for (const LayersKept kept : {LayersKept::all, LayersKept::none})
+    const FileFigures expected = measure(read(true, KeptPlanes::all), {.threads = 1});
+    for (const KeptPlanes kept : {KeptPlanes::all, KeptPlanes::none})
         for (const unsigned threads : test::thread_counts()) {
             const LayerFile file = read(true, kept);
-            ASSERT_EQ(file.stream != nullptr, kept == LayersKept::none);
+            ASSERT_EQ(file.plane_bytes > 0, kept == KeptPlanes::none);
             const FileFigures found = measure(file, {.threads = threads});
             EXPECT_EQ(found.contours.perimeter_mm, expected.contours.perimeter_mm);
             EXPECT_EQ(found.volume_mm3, expected.volume_mm3);
@@ -70,10 +68,7 @@ TEST(LayerFileFigures, AreTheSameForAnyNumberOfThreadsAndIfLayersAreNotInMemory)
         }
 }
 
-TEST(LayerFileFigures, NeedPartsOnTheSamePlanes) {
-    LayerFile file = read(true, LayersKept::all);
-    file.parts[1].layers.pop_back();
-    test::expect_error(ErrorKind::usage, {"has 299 layers"}, [&] { static_cast<void>(measure(file)); });
+TEST(LayerFileFigures, OfNoPartsAreNothing) {
     EXPECT_EQ(measure(LayerFile{}).contours.points, 0U);
 }
 

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include <array>
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -21,11 +21,11 @@ TEST(LayerFindings, CountALayerOnceWhicheverOfItsPartsHaveInvertedRings) {
     turned.top = 2.5;
     Layer above = square;
     above.z = 3;
-    const std::array parts{LayerStack{square, turned, above}, LayerStack{square, turned, square}};
-    EXPECT_TRUE(layer_findings(std::array{LayerStack{square}, LayerStack{square}}, LayerUse::scanned, {},
+    const std::vector<LayerStack> parts{{square, turned, above}, {square, turned, above}};
+    EXPECT_TRUE(layer_findings(source_of(std::vector(2, LayerStack{square})), LayerUse::scanned,
                                InversionSearch::full)
                     .empty());
-    const Findings found = layer_findings(parts, LayerUse::scanned, {}, InversionSearch::full);
+    const Findings found = layer_findings(source_of(parts), LayerUse::scanned, InversionSearch::full);
     EXPECT_EQ(found.texts(),
               Texts({"2 rings bound no material in 1 of 3 layers, first at z = 2 mm (162 mm3 lost): they run "
                      "clockwise outside of material; converting them with `fill` nonzero turns them round"}));
@@ -41,7 +41,7 @@ TEST(LayerFindings, DependOnTheUseOfTheLayers) {
     const auto kinds = [&](LayerUse use) {
         std::vector<FindingKind> found;
         for (const Finding& finding :
-             layer_findings(std::array{open}, use, {}, InversionSearch::quick).by_file)
+             layer_findings(source_of(std::vector(1, open)), use, InversionSearch::quick).by_file)
             found.push_back(finding.kind);
         return found;
     };
@@ -58,8 +58,9 @@ TEST(LayerFindings, AreTheSameForPlanesThatFollowOneAnother) {
     LayerFindingSearch search(0, LayerUse::scanned, {}, InversionSearch::full);
     for (std::size_t i = 0; i < layers.size(); ++i)
         search.look_at(i, 0, layers[i]);
-    EXPECT_EQ(search.findings().by_file,
-              layer_findings(std::array{layers}, LayerUse::scanned, {}, InversionSearch::full).by_file);
+    EXPECT_EQ(
+        search.findings().by_file,
+        layer_findings(source_of(std::vector(1, layers)), LayerUse::scanned, InversionSearch::full).by_file);
 }
 
 TEST(LayerFindings, NameStepsThatLeaveNothing) {

@@ -109,7 +109,7 @@ Written process(const LayerJob& job, const Planes& planes, std::optional<Ranges>
     processor.totals().store_in(written.result);
     output.finish_file(written.result);
     written.bytes = file_bytes(path);
-    written.parts = read_layers(path).parts;
+    written.parts = read_layers(path).in_memory();
     return written;
 }
 

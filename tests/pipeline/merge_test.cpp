@@ -84,10 +84,11 @@ TEST_F(Merge, TakesPlainPartsThatAFileHasNothingOf) {
         write("high", format, 1, parts, {false, true});
         ASSERT_EQ(refusal(format), "");
         const LayerFile merged = read_layers(path("merged"));
+        const std::vector<LayerPart> merged_parts = merged.in_memory();
         ASSERT_EQ(merged.parts.size(), 2U);
         EXPECT_EQ(merged.parts[0].label, "a");
-        EXPECT_EQ(merged.parts[0].layers[1].rings, 0U);
-        EXPECT_EQ(merged.parts[1].layers[1].rings, 1U);
+        EXPECT_EQ(merged_parts[0].layers[1].rings, 0U);
+        EXPECT_EQ(merged_parts[1].layers[1].rings, 1U);
     }
 }
 
@@ -107,12 +108,13 @@ TEST_F(Merge, PutsPartsInTheOrderOfEachFile) {
         }
         static_cast<void>(merge_layer_files(shards, path("merged"), {.format = format}));
         const LayerFile merged = read_layers(path("merged"));
+        const std::vector<LayerPart> merged_parts = merged.in_memory();
         std::string order;
-        for (const LayerPart& part : merged.parts)
+        for (const PartInfo& part : merged.parts)
             order += part.label;
         EXPECT_EQ(order, "dcuk");
-        EXPECT_EQ(merged.parts[1].layers[0].rings, 0U);
-        EXPECT_EQ(merged.parts[1].layers[1].rings, 1U);
+        EXPECT_EQ(merged_parts[1].layers[0].rings, 0U);
+        EXPECT_EQ(merged_parts[1].layers[1].rings, 1U);
         // A part behind those that contradict one another is not blamed.
         write("low", format, 0, {{.label = "a"}, {.label = "b"}, {.label = "x"}}, {true, true, true});
         write("high", format, 1, {{.label = "b"}, {.label = "a"}, {.label = "x"}}, {true, true, true});
@@ -133,7 +135,7 @@ TEST_F(Merge, TakesOpenContoursWithAWarning) {
     const std::vector<std::string> shards{path("low.svg"), path("high.svg")};
     const MergeResult result = merge_layer_files(shards, path("merged.svg"));
     EXPECT_EQ(result.layers, 2U);
-    EXPECT_EQ(read_layers(path("merged.svg")).parts.front().layers[1].open_chains(), 1U);
+    EXPECT_EQ(read_layers(path("merged.svg")).in_memory().front().layers[1].open_chains(), 1U);
     std::string all;
     for (const std::string& warning : result.file_warnings)
         all += warning + '\n';

@@ -69,7 +69,7 @@ class ScanJob : public testing::Test {
 
     /// The layers of a slice file, part by part.
     [[nodiscard]] std::vector<LayerPart> parts_of(const std::string& name) const {
-        return read_layers(path(name)).parts;
+        return read_layers(path(name)).in_memory();
     }
 
     /// What shards of a job write, put together.
@@ -240,14 +240,8 @@ TEST_F(ScanJob, MeasuresMaterialThatNoVectorReaches) {
     plain.scan.reset();
     plain.output = path("layers.npz");
     static_cast<void>(slice_file(plain));
-    std::vector<LayerStack> stacks;
-    LayerFileInfo info{.box = one.box, .layers = one.layers.size(), .bottom = one.bottom, .parts = {}};
-    for (const LayerPart& part : parts_of("layers.npz")) {
-        info.parts.push_back({.label = part.label});
-        stacks.push_back(part.layers);
-    }
-    const FileResult of_layers =
-        scan_layers(path("scanned.cli"), layer_format("cli", ""), stacks, {}, info, *scanned.scan);
+    const FileResult of_layers = scan_layers(path("scanned.cli"), layer_format("cli", ""),
+                                             read_layers(path("layers.npz")), *scanned.scan);
     EXPECT_EQ(unreached(of_layers).layers, 4U);
     EXPECT_EQ(unreached(of_layers).amount, unreached(one).amount);
     EXPECT_EQ(unreached(of_layers).first_z, unreached(one).first_z);
@@ -384,18 +378,19 @@ TEST_F(ScanJob, OfLayersThatAreThereHasTheBytesOfSlicing) {
         return job;
     }();
     static_cast<void>(slice_file(plain));
-    const LayerFile layers = read_layers(path("layers.npz"));
-    LayerFileInfo info{
-        .box = sliced.box, .layers = sliced.layers.size(), .bottom = sliced.bottom, .parts = {}};
-    std::vector<LayerStack> stacks;
-    for (const LayerPart& part : layers.parts) {
-        info.parts.push_back({.label = part.label, .support = part.label == "foot"});
-        stacks.push_back(part.layers);
+    LayerFile layers = read_layers(path("layers.npz"));
+    for (PartInfo& part : layers.parts) {
+        part.box = sliced.box;
+        part.support = part.label == "foot";
     }
+    // The box of a file reaches to the top of the last plane, and that of a mesh to the top of the mesh.
+    std::string expected = content("sliced.cli");
+    const std::string top = fmt::format("{:.6f}", sliced.box.max.z);
+    expected.replace(expected.find(top), top.size(), fmt::format("{:.6f}", layers.planes.back().top));
     for (const unsigned threads : {1U, 4U}) {
-        const FileResult result = scan_layers(path("scanned.cli"), layer_format("cli", ""), stacks, {}, info,
+        const FileResult result = scan_layers(path("scanned.cli"), layer_format("cli", ""), layers,
                                               *scanned.scan, {}, {.threads = threads});
-        EXPECT_EQ(content("scanned.cli"), content("sliced.cli"));
+        EXPECT_EQ(content("scanned.cli"), expected);
         EXPECT_EQ(result.bytes, sliced.bytes);
         ASSERT_EQ(result.layers.size(), sliced.layers.size());
         for (std::size_t e = 0; e < result.exposures.size(); ++e) {
@@ -418,13 +413,9 @@ TEST_F(ScanJob, OfAFileInMillimetresWithDecimalsKeepsWhatIsRound) {
         "$$POLYLINE/1,1,{}{}\n$$GEOMETRYEND\n",
         corners + 1, ring);
     const LayerFile file = read_layers(path("round.cli"));
-    const LayerStack& layers = file.parts.front().layers;
-    const LayerFileInfo info{.box = {{4, 4, 0}, {6, 6, 0.1}}, .layers = layers.size(), .parts = {PartInfo{}}};
-    const ScanStrategy strategy;
-    static_cast<void>(scan_layers(path("round.ovf"), layer_format("ovf", ""), std::span(&layers, 1),
-                                  file.rounding, info, strategy));
+    static_cast<void>(scan_layers(path("round.ovf"), layer_format("ovf", ""), file, ScanStrategy{}));
     std::size_t points = 0;
-    for (const LayerPart& part : read_layers(path("round.ovf")).parts)
+    for (const LayerPart& part : parts_of("round.ovf"))
         points += part.layers.front().points.size();
     EXPECT_EQ(points, std::size_t{corners});
 }

@@ -2,6 +2,7 @@
 #include "lamella/pipeline/verify.hpp"
 
 #include "fixtures/expect_error.hpp"
+#include "fixtures/layer_files.hpp"
 #include "fixtures/layers.hpp"
 #include "fixtures/meshes.hpp"
 
@@ -54,10 +55,8 @@ TEST(Verify, NamesTheContourOfACoordinateThatIsNoLength) {
                            [&] { static_cast<void>(verify(layers)); });
         const LayerPart part{
             .label = "a", .layers = layers, .exposure = Exposure{.part = "a", .parameters = {}}};
-        LayerFile file;
-        file.parts.push_back(part);
         test::expect_error(ErrorKind::usage, {"layer 7, contour 1"},
-                           [&] { static_cast<void>(verify_vectors(file)); });
+                           [&] { static_cast<void>(verify_vectors(test::file_of({part}))); });
         Layer high = at(8, layer_of({rectangle(0, 0, 9, 9)}));
         high.top = bad;
         test::expect_error(ErrorKind::usage, {"layer 8", "heights"},

@@ -4,6 +4,7 @@
 #include "lamella/scan/scan.hpp"
 #include "lamella/slicing/slice.hpp"
 
+#include "fixtures/layer_files.hpp"
 #include "fixtures/layers.hpp"
 #include "fixtures/meshes.hpp"
 
@@ -19,21 +20,16 @@
 namespace lamella::verify_vectors_cases {
 
 using test::box_mesh;
+using test::file_of;
 using test::layer_of;
 using test::rectangle;
-
-inline LayerFile file_of(std::vector<LayerPart> parts) {
-    LayerFile file;
-    file.parts = std::move(parts);
-    return file;
-}
 
 /// The vectors of layers, as a file has them.
 inline std::vector<LayerPart> scanned(const LayerStack& layers, const ScanStrategy& strategy,
                                       const std::string& part) {
     std::vector<LayerPart> parts;
     for (const Exposure& exposure : exposures(strategy, part))
-        parts.push_back({exposure.label(), {}, exposure});
+        parts.push_back({.label = exposure.label(), .layers = {}, .exposure = exposure});
     for (std::size_t i = 0; i < layers.size(); ++i) {
         std::vector<ScanLayer> below(layers.begin(), layers.begin() + static_cast<std::ptrdiff_t>(i));
         std::reverse(below.begin(), below.end());
@@ -62,7 +58,9 @@ class VerifyVectors : public testing::Test {
     VectorVerification with_all() const {
         return verify_vectors(file_of(parts_), {.mesh = mesh_, .strategy = strategy_});
     }
-    VectorVerification with_strategy() const { return verify_vectors(file_of(parts_), {.strategy = strategy_}); }
+    VectorVerification with_strategy() const {
+        return verify_vectors(file_of(parts_), {.strategy = strategy_});
+    }
     VectorVerification with_mesh() const { return verify_vectors(file_of(parts_), {.mesh = mesh_}); }
     VectorVerification with_nothing() const { return verify_vectors(file_of(parts_)); }
 

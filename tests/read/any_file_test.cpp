@@ -43,7 +43,7 @@ TEST(ReadAny, GivesLayersOrAMeshByTheContent) {
               {"z": 1, "bottom": 0, "top": 2, "parts": [{"rings": [[0, 0, 1, 0, 0, 1]]}]}]})"sv}) {
         const auto read = read_text(text);
         ASSERT_TRUE(std::holds_alternative<LayerFile>(read)) << text;
-        EXPECT_GT(std::get<LayerFile>(read).parts.front().layers.size(), 0U);
+        EXPECT_GT(std::get<LayerFile>(read).in_memory().front().layers.size(), 0U);
     }
     for (const std::string_view text :
          {mesh_as_text, "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"sv,

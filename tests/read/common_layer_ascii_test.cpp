@@ -16,9 +16,10 @@ namespace {
 
 TEST(ReadCommonLayer, AsciiReportsHeightsAndContours) {
     const LayerFile file = read(ascii(ring));
+    const std::vector<LayerPart> parts = file.in_memory();
     expect_ring(file, 96);
     EXPECT_EQ(file.format, "cli-ascii");
-    EXPECT_EQ(file.parts.at(0).layers.front().rings, 2U);
+    EXPECT_EQ(parts.at(0).layers.front().rings, 2U);
     EXPECT_TRUE(file.warnings.empty()) << file.warnings.front();
 }
 
@@ -48,11 +49,12 @@ TEST(ReadCommonLayer, PowerSpeedAndFocusAreParametersOfTheVectorsThatFollow) {
         "$$LAYER/0\n$$LAYER/50\n" + square + "$$POWER/100.0\n$$SPEED/800\n$$FOCUS/-1.5 // mm //\n" + square +
             "$$HATCHES/1,1,1,1,8,8\n$$LAYER/90\n$$HATCHES/1,1,2,2,8,8\n$$POWER/150\n$$HATCHES/1,1,3,3,8,8\n",
         "$$UNITS/0.01\n$$LABEL/1,cube\n"));
+    const std::vector<LayerPart> parts = file.in_memory();
     EXPECT_TRUE(file.warnings.empty()) << file.warnings.front();
     ASSERT_EQ(file.parts.size(), 4U);
     EXPECT_FALSE(file.parts[0].exposure);
     EXPECT_EQ(file.parts[0].label, "cube");
-    EXPECT_EQ(file.parts[0].layers[0].rings, 1U);
+    EXPECT_EQ(parts[0].layers[0].rings, 1U);
     for (std::size_t i = 1; i < 4; ++i) {
         const Exposure& exposure = file.parts[i].exposure.value();
         EXPECT_EQ(exposure.part, "cube");
@@ -63,10 +65,10 @@ TEST(ReadCommonLayer, PowerSpeedAndFocusAreParametersOfTheVectorsThatFollow) {
         EXPECT_EQ(exposure.kind, i == 1 ? VectorKind::contour : VectorKind::hatch);
         EXPECT_EQ(exposure.contour, i == 1 ? 1U : 0U);
     }
-    EXPECT_EQ(file.parts[1].layers[0].rings, 1U);
-    EXPECT_EQ(file.parts[2].hatches_of(0).size(), 2U);
-    EXPECT_EQ(file.parts[2].hatches_of(1).size(), 2U);
-    EXPECT_EQ(file.parts[3].hatches_of(1).size(), 2U);
+    EXPECT_EQ(parts[1].layers[0].rings, 1U);
+    EXPECT_EQ(parts[2].hatches_of(0).size(), 2U);
+    EXPECT_EQ(parts[2].hatches_of(1).size(), 2U);
+    EXPECT_EQ(parts[3].hatches_of(1).size(), 2U);
 }
 
 TEST(ReadCommonLayer, CommandsThatNobodyKnowsAreCounted) {
@@ -82,7 +84,8 @@ TEST(ReadCommonLayer, OpenContoursThatEndWhereTheyBeganAreClosed) {
     const LayerFile file =
         read(ascii("$$LAYER/0\n$$LAYER/50\n$$POLYLINE/1,2,5,0,0,1000,0,1000,1000,0,1000,0,0\n"
                    "$$POLYLINE/1,2,3,0,0,5,5,0,0\n"));
-    const Layer& layer = file.parts.at(0).layers.at(0);
+    const std::vector<LayerPart> parts = file.in_memory();
+    const Layer& layer = parts.at(0).layers.at(0);
     EXPECT_EQ(layer.rings, 1U);
     EXPECT_EQ(layer.open_chains(), 1U); // which bounds nothing, forth and back
     ASSERT_EQ(file.warnings.size(), 1U);
@@ -114,7 +117,8 @@ TEST(ReadCommonLayer, PlacesInTextsAreLines) {
 
 TEST(ReadCommonLayer, StatedDirectionHoldsAgainstTheOrderOfPoints) {
     const LayerFile file = read(ascii("$$LAYER/0\n$$LAYER/50\n$$POLYLINE/1,0,4,0,0,10,0,10,10,0,0\n"));
-    EXPECT_LT(measure(file.parts.at(0).layers.front()).area_mm2, 0);
+    const std::vector<LayerPart> parts = file.in_memory();
+    EXPECT_LT(measure(parts.at(0).layers.front()).area_mm2, 0);
     ASSERT_EQ(file.warnings.size(), 1U);
     EXPECT_NE(file.warnings.front().find("reversed"), std::string::npos);
 }
@@ -122,13 +126,15 @@ TEST(ReadCommonLayer, StatedDirectionHoldsAgainstTheOrderOfPoints) {
 TEST(ReadCommonLayer, UnclosedRingsAreClosedAndSlightOnesDropped) {
     const LayerFile file =
         read(ascii("$$LAYER/0\n$$LAYER/50\n$$POLYLINE/1,1,3,0,0,10,0,10,10\n$$POLYLINE/1,1,3,0,0,1,1,0,0\n"));
-    EXPECT_EQ(file.parts.at(0).layers.front().rings, 1U);
+    const std::vector<LayerPart> parts = file.in_memory();
+    EXPECT_EQ(parts.at(0).layers.front().rings, 1U);
     EXPECT_EQ(file.warnings.size(), 2U);
 }
 
 TEST(ReadCommonLayer, OpenLinesStayOpen) {
     const LayerFile file = read(ascii("$$LAYER/0\n$$LAYER/50\n$$POLYLINE/1,2,3,0,0,10,0,10,10\n"));
-    EXPECT_EQ(file.parts.at(0).layers.front().open_chains(), 1U);
+    const std::vector<LayerPart> parts = file.in_memory();
+    EXPECT_EQ(parts.at(0).layers.front().open_chains(), 1U);
 }
 
 } // namespace

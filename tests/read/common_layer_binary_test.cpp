@@ -15,11 +15,13 @@ namespace {
 
 TEST(ReadCommonLayer, BinaryLongAndShortFormsAgree) {
     const LayerFile by_long = read(binary(long_ring));
+    const std::vector<LayerPart> by_long_parts = by_long.in_memory();
     const LayerFile by_short = read(binary(short_ring));
+    const std::vector<LayerPart> by_short_parts = by_short.in_memory();
     expect_ring(by_long, 100);
     expect_ring(by_short, 100);
     EXPECT_EQ(by_long.format, "cli");
-    EXPECT_TRUE(same_contours(by_long.parts.at(0).layers.front(), by_short.parts.at(0).layers.front()));
+    EXPECT_TRUE(same_contours(by_long_parts.at(0).layers.front(), by_short_parts.at(0).layers.front()));
 }
 
 TEST(ReadCommonLayer, ShortNumbersAreSignedWhereTheBoxIsNegative) {
@@ -32,9 +34,10 @@ TEST(ReadCommonLayer, ShortHeightsAreSignedWhereTheBoxReachesBelowZero) {
     const std::string geometry =
         u16(128, 65526, 128, 65536 - 5, 129, 1, 1, 5, 0, 0, 10, 0, 10, 10, 0, 10, 0, 0);
     const LayerFile file = read(binary(geometry, "$$UNITS/1\n$$DIMENSION/0,0,-10,10,10,0\n"));
-    ASSERT_EQ(file.parts.at(0).layers.size(), 1U);
-    EXPECT_EQ(file.parts[0].layers[0].bottom, -10);
-    EXPECT_EQ(file.parts[0].layers[0].top, -5);
+    const std::vector<LayerPart> parts = file.in_memory();
+    ASSERT_EQ(parts.at(0).layers.size(), 1U);
+    EXPECT_EQ(parts[0].layers[0].bottom, -10);
+    EXPECT_EQ(parts[0].layers[0].top, -5);
     EXPECT_TRUE(file.warnings.empty());
 }
 

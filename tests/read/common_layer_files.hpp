@@ -79,8 +79,9 @@ inline const std::string short_ring =
     u16(128, 0, 128, 50, 129, 1, 1, 5, 0, 0, 1000, 0, 1000, 1000, 0, 1000, 0, 0);
 
 inline void expect_ring(const LayerFile& file, double area) {
-    ASSERT_EQ(file.parts.at(0).layers.size(), 1U);
-    const Layer& layer = file.parts.at(0).layers.front();
+    const std::vector<LayerPart> parts = file.in_memory();
+    ASSERT_EQ(parts.at(0).layers.size(), 1U);
+    const Layer& layer = parts.at(0).layers.front();
     EXPECT_DOUBLE_EQ(measure(layer).area_mm2, area);
     EXPECT_DOUBLE_EQ(layer.bottom, 0);
     EXPECT_DOUBLE_EQ(layer.z, 0.25);

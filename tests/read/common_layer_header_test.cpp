@@ -18,13 +18,15 @@ TEST(ReadCommonLayer, ABoxOfTheFirstAndTheLastPlaneReportsNoBottom) {
         "$$LAYER/10\n" + ring.substr(ring.find("$$POLY")) + "$$LAYER/20\n" + ring.substr(ring.find("$$POLY"));
     for (const std::string box : {"0,0,0.1,10,10,0.2", "0,0,0.10000001,10,10,0.2"}) {
         const LayerFile file = read(ascii(layers, "$$UNITS/0.01\n$$DIMENSION/" + box + "\n"));
+        const std::vector<LayerPart> parts = file.in_memory();
         EXPECT_TRUE(file.warnings.empty()) << file.warnings.front();
         EXPECT_TRUE(file.guess.empty());
-        EXPECT_DOUBLE_EQ(file.parts.at(0).layers.at(0).bottom, 0);
-        EXPECT_DOUBLE_EQ(file.parts[0].layers[0].top, 0.1);
+        EXPECT_DOUBLE_EQ(parts.at(0).layers.at(0).bottom, 0);
+        EXPECT_DOUBLE_EQ(parts[0].layers[0].top, 0.1);
     }
     const LayerFile bottoms = read(ascii(layers, "$$UNITS/0.01\n$$DIMENSION/0,0,0.1,10,10,0.3\n"));
-    EXPECT_DOUBLE_EQ(bottoms.parts.at(0).layers.at(0).bottom, 0.1);
+    const std::vector<LayerPart> bottoms_parts = bottoms.in_memory();
+    EXPECT_DOUBLE_EQ(bottoms_parts.at(0).layers.at(0).bottom, 0.1);
     ASSERT_EQ(bottoms.warnings.size(), 1U);
     EXPECT_EQ(bottoms.guess, bottoms.warnings[0]);
 }

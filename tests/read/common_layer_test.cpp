@@ -45,26 +45,29 @@ TEST(ReadCommonLayer, ParametersGoWithWhatLabelsSay) {
 TEST(ReadCommonLayer, WithoutAZeroLayerTheFirstLayerIsAsThickAsTheNext) {
     const LayerFile file = read(ascii("$$LAYER/30\n$$POLYLINE/1,1,4,0,0,10,0,10,10,0,0\n"
                                       "$$LAYER/50\n$$POLYLINE/1,1,4,0,0,10,0,10,10,0,0\n"));
-    ASSERT_EQ(file.parts.at(0).layers.size(), 2U);
-    EXPECT_NEAR(file.parts.at(0).layers[0].bottom, 0.1, 1e-12);
-    EXPECT_NEAR(file.parts.at(0).layers[1].bottom, 0.3, 1e-12);
+    const std::vector<LayerPart> parts = file.in_memory();
+    ASSERT_EQ(parts.at(0).layers.size(), 2U);
+    EXPECT_NEAR(parts.at(0).layers[0].bottom, 0.1, 1e-12);
+    EXPECT_NEAR(parts.at(0).layers[1].bottom, 0.3, 1e-12);
 }
 
 TEST(ReadCommonLayer, ContoursOnTheBottomMakeHeightsBottoms) {
     const LayerFile file = read(ascii("$$LAYER/0\n$$POLYLINE/1,1,4,0,0,10,0,10,10,0,0\n"
                                       "$$LAYER/20\n$$POLYLINE/1,1,4,0,0,10,0,10,10,0,0\n"));
-    ASSERT_EQ(file.parts.at(0).layers.size(), 2U);
-    EXPECT_NEAR(file.parts.at(0).layers[1].bottom, 0.2, 1e-12);
-    EXPECT_NEAR(file.parts.at(0).layers[1].top, 0.4, 1e-12);
+    const std::vector<LayerPart> parts = file.in_memory();
+    ASSERT_EQ(parts.at(0).layers.size(), 2U);
+    EXPECT_NEAR(parts.at(0).layers[1].bottom, 0.2, 1e-12);
+    EXPECT_NEAR(parts.at(0).layers[1].top, 0.4, 1e-12);
     EXPECT_EQ(file.warnings.size(), 1U);
 }
 
 TEST(ReadCommonLayer, WithoutABoxHeightsAreBottomsWhereTheFirstIsZeroOnly) {
     const std::string triangle = "$$POLYLINE/1,1,4,0,0,10,0,10,10,0,0\n";
     const LayerFile file = read(ascii("$$LAYER/-20\n" + triangle + "$$LAYER/0\n" + triangle));
-    ASSERT_EQ(file.parts.at(0).layers.size(), 2U);
-    EXPECT_NEAR(file.parts.at(0).layers[0].bottom, -0.4, 1e-12);
-    EXPECT_EQ(file.parts.at(0).layers[1].top, 0);
+    const std::vector<LayerPart> parts = file.in_memory();
+    ASSERT_EQ(parts.at(0).layers.size(), 2U);
+    EXPECT_NEAR(parts.at(0).layers[0].bottom, -0.4, 1e-12);
+    EXPECT_EQ(parts.at(0).layers[1].top, 0);
     EXPECT_TRUE(file.warnings.empty());
 }
 
@@ -72,22 +75,24 @@ TEST(ReadCommonLayer, TheLayerThatReportsTheBottomHasNoPoints) {
     const std::string triangle = "$$POLYLINE/1,1,4,0,0,10,0,10,10,0,0\n";
     const std::string layers = "$$LAYER/50\n" + triangle + "$$LAYER/100\n" + triangle;
     for (const std::string nothing : {"", "$$HATCHES/1,0\n", "$$POLYLINE/1,1,0\n"}) {
-        const LayerStack stack = read(ascii("$$LAYER/0\n" + nothing + layers)).parts.at(0).layers;
+        const LayerStack stack = read(ascii("$$LAYER/0\n" + nothing + layers)).in_memory().at(0).layers;
         ASSERT_EQ(stack.size(), 2U) << nothing;
         EXPECT_EQ(stack[0].bottom, 0);
         EXPECT_EQ(stack[0].top, 0.5);
     }
     // A tip: contours that shrank to a point are dropped, their layer is not.
-    const LayerStack tip = read(ascii("$$LAYER/25\n$$POLYLINE/1,1,2,0,0,0,0\n" + layers)).parts.at(0).layers;
+    const LayerStack tip =
+        read(ascii("$$LAYER/25\n$$POLYLINE/1,1,2,0,0,0,0\n" + layers)).in_memory().at(0).layers;
     ASSERT_EQ(tip.size(), 3U);
     EXPECT_EQ(tip[0].bottom, 0);
 }
 
 TEST(ReadCommonLayer, ASingleLayerBelowTheBottomOfThePartHasNoThickness) {
     const LayerFile file = read(ascii("$$LAYER/-10\n$$POLYLINE/1,1,4,0,0,9,0,9,9,0,0\n"));
-    ASSERT_EQ(file.parts.at(0).layers.size(), 1U);
-    EXPECT_DOUBLE_EQ(file.parts.at(0).layers[0].z, -0.1);
-    EXPECT_EQ(file.parts.at(0).layers[0].bottom, file.parts.at(0).layers[0].top);
+    const std::vector<LayerPart> parts = file.in_memory();
+    ASSERT_EQ(parts.at(0).layers.size(), 1U);
+    EXPECT_DOUBLE_EQ(parts.at(0).layers[0].z, -0.1);
+    EXPECT_EQ(parts.at(0).layers[0].bottom, parts.at(0).layers[0].top);
 }
 
 TEST(ReadCommonLayer, NumbersThatOverflowInMillimetresAreRefused) {
@@ -103,23 +108,26 @@ TEST(ReadCommonLayer, LayersOutOfOrderAreSortedAndEqualOnesJoined) {
     const std::string triangle = "$$POLYLINE/1,1,4,0,0,10,0,10,10,0,0\n";
     const LayerFile file = read(
         ascii("$$LAYER/0\n$$LAYER/50\n" + triangle + "$$LAYER/20\n" + triangle + "$$LAYER/50\n" + triangle));
-    ASSERT_EQ(file.parts.at(0).layers.size(), 2U);
-    EXPECT_EQ(file.parts.at(0).layers[1].rings, 2U);
+    const std::vector<LayerPart> parts = file.in_memory();
+    ASSERT_EQ(parts.at(0).layers.size(), 2U);
+    EXPECT_EQ(parts.at(0).layers[1].rings, 2U);
     EXPECT_EQ(file.warnings.size(), 2U);
 }
 
 TEST(ReadCommonLayer, HatchesAreKept) {
     const LayerFile text = read(ascii(ring + "$$HATCHES/1,2,0,0,1,1,2,2,3,3\n"));
+    const std::vector<LayerPart> text_parts = text.in_memory();
     expect_ring(text, 96);
     EXPECT_TRUE(text.warnings.empty());
-    const std::span<const Point2> lines = text.parts.front().hatches_of(0);
+    const std::span<const Point2> lines = text_parts.front().hatches_of(0);
     ASSERT_EQ(lines.size(), 4U);
     EXPECT_EQ(lines[3], (Point2{0.03, 0.03}));
     const LayerFile bytes = read(binary(short_ring + u16(131, 1, 1, 1, 2, 3, 4) + u16(132) + bits(1) +
                                         bits(1) + bits(1.0F) + bits(2.0F) + bits(3.0F) + bits(4.0F)));
+    const std::vector<LayerPart> bytes_parts = bytes.in_memory();
     expect_ring(bytes, 100);
     EXPECT_TRUE(bytes.warnings.empty());
-    EXPECT_EQ(bytes.parts.front().hatches_of(0).size(), 4U);
+    EXPECT_EQ(bytes_parts.front().hatches_of(0).size(), 4U);
 }
 
 TEST(ReadCommonLayer, PartsAreReportedByTheirNumbers) {
@@ -128,14 +136,15 @@ TEST(ReadCommonLayer, PartsAreReportedByTheirNumbers) {
         read(ascii("$$LAYER/0\n$$LAYER/50\n$$POLYLINE/7" + triangle + "$$POLYLINE/3" + triangle +
                        "$$POLYLINE/7" + triangle + "$$LAYER/90\n$$HATCHES/7,1,0,0,1,1\n",
                    "$$UNITS/0.01\n$$LABEL/7,seven\n$$LABEL/9,\"nine\"\n"));
+    const std::vector<LayerPart> parts = file.in_memory();
     ASSERT_EQ(file.parts.size(), 3U);
     EXPECT_EQ(file.parts[0].label, "");
     EXPECT_EQ(file.parts[1].label, "seven");
     EXPECT_EQ(file.parts[2].label, "nine");
-    EXPECT_EQ(file.parts[0].layers[0].rings, 1U);
-    EXPECT_EQ(file.parts[1].layers[0].rings, 2U);
-    EXPECT_EQ(file.parts[2].layers[0].rings, 0U);
-    EXPECT_EQ(file.parts[1].hatches_of(1).size(), 2U);
+    EXPECT_EQ(parts[0].layers[0].rings, 1U);
+    EXPECT_EQ(parts[1].layers[0].rings, 2U);
+    EXPECT_EQ(parts[2].layers[0].rings, 0U);
+    EXPECT_EQ(parts[1].hatches_of(1).size(), 2U);
     EXPECT_EQ(file.merged()[0].rings, 3U);
 }
 
@@ -152,7 +161,7 @@ TEST(ReadCommonLayer, EveryTruncatedFileIsAnErrorOrFewerContours) {
     for (const std::string& whole : {ascii(ring), binary(long_ring), binary(short_ring)}) {
         for (std::size_t n = 1; n < whole.size(); ++n) {
             try {
-                EXPECT_LE(read(whole.substr(0, n)).parts.at(0).layers.size(), 2U);
+                EXPECT_LE(read(whole.substr(0, n)).in_memory().at(0).layers.size(), 2U);
             } catch (const Error& error) {
                 EXPECT_EQ(error.kind(), ErrorKind::input) << error.what();
             }
@@ -183,8 +192,9 @@ TEST(ReadCommonLayer, PublishedSamplesHaveTheirArea) {
         GTEST_SKIP() << "no samples at " << folder;
     for (const char* name : {"ring_ascii.cli", "ring_long.cli", "ring_short.cli", "ring_short_align.cli"}) {
         const LayerFile file = read_layers((folder / name).string());
-        ASSERT_EQ(file.parts.at(0).layers.size(), 2U) << name;
-        for (const Layer& layer : file.parts.at(0).layers)
+        const std::vector<LayerPart> parts = file.in_memory();
+        ASSERT_EQ(parts.at(0).layers.size(), 2U) << name;
+        for (const Layer& layer : parts.at(0).layers)
             EXPECT_NEAR(measure(layer).area_mm2, 96, 1e-9) << name;
     }
 }

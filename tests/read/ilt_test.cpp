@@ -54,26 +54,28 @@ TEST(ReadIlt, HeightsOfAllFilesAreBottomsWhereTheLowestOnesAre) {
     // The files have different planes in common with the archive.
     const auto expect_the_same_if_not_in_memory = [&](const std::string& bytes) {
         const LayerFile held = read(bytes);
+        const std::vector<LayerPart> held_parts = held.in_memory();
         const LayerFile file =
-            read_layers(std::as_bytes(std::span(bytes)), "test.ilt", {.layers = LayersKept::none});
-        ASSERT_TRUE(file.stream);
+            read_layers(std::as_bytes(std::span(bytes)), "test.ilt", {.kept = KeptPlanes::none});
+        ASSERT_GT(file.plane_bytes, 0U);
         EXPECT_EQ(file.warnings, held.warnings);
-        ASSERT_EQ(file.planes().size(), held.planes().size());
-        for (std::size_t plane = 0; plane < file.planes().size(); ++plane) {
+        ASSERT_EQ(file.planes.size(), held.planes.size());
+        for (std::size_t plane = 0; plane < file.planes.size(); ++plane) {
             EXPECT_EQ(content_hash(file.plane(plane)), content_hash(held.plane(plane)));
-            EXPECT_EQ(file.contents()[plane].hatch_lines, held.contents()[plane].hatch_lines);
-            EXPECT_EQ(file.plane(plane).polylines.back().bottom, held.parts.back().layers[plane].bottom);
+            EXPECT_EQ(file.contents[plane].hatch_lines, held.contents[plane].hatch_lines);
+            EXPECT_EQ(file.plane(plane).polylines.back().bottom, held_parts.back().layers[plane].bottom);
         }
     };
     // Vectors end at x = z of the file.
     const auto expect_bottoms = [](const LayerFile& file) {
-        for (const LayerPart& part : file.parts) {
+        const std::vector<LayerPart> parts = file.in_memory();
+        for (const LayerPart& part : parts) {
             ASSERT_EQ(part.layers.size(), 4U);
             for (std::size_t plane = 0; plane < part.layers.size(); ++plane)
                 for (std::size_t i = 1; i < part.hatches_of(plane).size(); i += 2)
                     EXPECT_EQ(part.layers[plane].bottom, part.hatches_of(plane)[i].x);
         }
-        EXPECT_EQ(file.parts.at(0).layers[3].top, 4);
+        EXPECT_EQ(parts.at(0).layers[3].top, 4);
     };
     const std::vector<std::string> all = {"0", "1", "2", "3"};
     expect_bottoms(read(archive_of({"2", "3"}, all)));
@@ -81,7 +83,7 @@ TEST(ReadIlt, HeightsOfAllFilesAreBottomsWhereTheLowestOnesAre) {
     expect_bottoms(read(archive_of({"0", "2"}, {"1", "3"})));
     expect_the_same_if_not_in_memory(archive_of({"2", "3"}, all));
     expect_the_same_if_not_in_memory(archive_of({"0", "2"}, {"1", "3"}));
-    EXPECT_EQ(read(archive_of({"2", "3"}, {"1", "2"})).parts.at(0).layers.at(0).bottom, 0);
+    EXPECT_EQ(read(archive_of({"2", "3"}, {"1", "2"})).in_memory().at(0).layers.at(0).bottom, 0);
 }
 
 /// The exposure of a file of this name, which holds a hatch line or else a square.

@@ -13,6 +13,7 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace lamella::layer_assembly_cases {
@@ -27,8 +28,11 @@ std::string_view here() {
 }
 
 struct Limited {
+    explicit Limited(KeptPlanes kept = KeptPlanes::all)
+        : limits(source, LayerReadOptions{.max_memory = most_bytes, .kept = kept}) {}
+
     ByteSource source = test::source_of("x");
-    ReadLimits limits{source, LayerReadOptions{.max_memory = most_bytes}};
+    ReadLimits limits;
 };
 
 RawLayer at_height(double z) {
@@ -77,6 +81,52 @@ TEST(RawLayer, EndsContoursWithoutRepeatedPoints) {
     }
 }
 
+TEST(RawLayer, EndsWithItsRunsInTheOrderOfTheFile) {
+    using Kind = RawLayer::Run::Kind;
+    for (const KeptPlanes kept : {KeptPlanes::all, KeptPlanes::none}) {
+        Limited limited(kept);
+        RawLayer layer;
+        DroppedContours dropped;
+        const auto add_contour = [&](bool closed, std::uint32_t part, double x) {
+            layer.points.insert(layer.points.end(), {{x, 0}, {x, 1}, {x - 1, 1}});
+            layer.end_contour(closed, part, limited.limits, here, dropped);
+        };
+        add_contour(true, 0, 5);
+        add_contour(true, 0, 7);
+        layer.hatches = {{-3, 2}, {9, -2}};
+        layer.end_hatches(1, limited.limits, here);
+        layer.end_hatches(0, limited.limits, here); // none
+        add_contour(false, 1, 4);
+        add_contour(true, 1, 4);
+        layer.end_layer(limited.limits);
+        struct Expected {
+            std::uint32_t part;
+            Kind kind;
+            std::size_t begin;
+            std::size_t end;
+            Box3 box;
+        };
+        const std::vector<Expected> expected{{0, Kind::ring, 0, 6, {{4, 0, 0}, {7, 1, 0}}},
+                                             {1, Kind::hatch, 0, 2, {{-3, -2, 0}, {9, 2, 0}}},
+                                             {1, Kind::chain, 6, 9, {{3, 0, 0}, {4, 1, 0}}},
+                                             {1, Kind::ring, 9, 12, {{3, 0, 0}, {4, 1, 0}}}};
+        ASSERT_EQ(layer.runs.size(), expected.size());
+        for (std::size_t i = 0; i < expected.size(); ++i) {
+            EXPECT_EQ(layer.runs[i].part, expected[i].part) << i;
+            EXPECT_EQ(layer.runs[i].kind, expected[i].kind) << i;
+            EXPECT_EQ(layer.runs[i].begin, expected[i].begin) << i;
+            EXPECT_EQ(layer.runs[i].end, expected[i].end) << i;
+            EXPECT_EQ(layer.runs[i].box, expected[i].box) << i;
+        }
+        EXPECT_EQ(layer.points.empty(), kept == KeptPlanes::none);
+        EXPECT_EQ(layer.hatches.empty(), kept == KeptPlanes::none);
+        const std::vector<std::uint32_t> numbers{3, 2};
+        layer.renumber(numbers);
+        EXPECT_EQ(layer.runs.front().part, 3U);
+        EXPECT_EQ(layer.runs.back().part, 2U);
+    }
+}
+
 TEST(PartNumbers, PutPartsInTheOrderOfTheirKeys) {
     Random random(582);
     for (int round = 0; round < test::rounds_within_reason(300); ++round) {
@@ -92,7 +142,8 @@ TEST(PartNumbers, PutPartsInTheOrderOfTheirKeys) {
             layer.end_contour(true, numbers.number_of(keys.back(), here), limited.limits, here, dropped);
         }
         LayerFile file;
-        numbers.put(file, std::span(&layer, 1), [](int key) { return LayerPart{std::to_string(key), {}}; });
+        numbers.put(file, std::span(&layer, 1),
+                    [](int key) { return PartInfo{.label = std::to_string(key)}; });
         std::vector<int> ordered = keys;
         std::sort(ordered.begin(), ordered.end());
         ordered.erase(std::unique(ordered.begin(), ordered.end()), ordered.end());
@@ -108,8 +159,9 @@ TEST(PartNumbers, PutPartsInTheOrderOfTheirKeys) {
 
 TEST(LayerAssembly, StacksLayersWithoutGaps) {
     Random random(583);
-    for (const bool tops : {true, false}) {
-        Limited limited;
+    for (const auto& [tops, kept] : {std::pair(true, KeptPlanes::all), std::pair(false, KeptPlanes::all),
+                                     std::pair(true, KeptPlanes::none), std::pair(false, KeptPlanes::none)}) {
+        Limited limited(kept);
         LayerFile file;
         file.parts.resize(2);
         std::vector<RawLayer> raw;
@@ -123,14 +175,22 @@ TEST(LayerAssembly, StacksLayersWithoutGaps) {
             raw.back().points = {{2, -0.0}, {0, 0}, {1, 3}};
             std::reverse(raw.back().points.begin(), raw.back().points.end());
             raw.back().end_contour(true, static_cast<std::uint32_t>(i % 2), limited.limits, here, dropped);
+            raw.back().begin = raw.size() - 1;
         }
+        const std::vector<RawLayer> whole = raw;
+        const ParseLayer parse = [&](std::size_t begin, ReadLimits&) {
+            return whole[begin];
+        };
+        end_layers(raw, limited.limits);
         const double other = tops ? 1 : z + 0.5;
         Executor executor({.threads = 3});
         if (tops)
-            add_layers_by_tops(file, raw, other, limited.limits, executor);
+            add_layers_by_tops(file, raw, other, limited.limits, executor, parse);
         else
-            add_layers_by_bottoms(file, raw, other, limited.limits, executor);
-        for (const LayerPart& part : file.parts) {
+            add_layers_by_bottoms(file, raw, other, limited.limits, executor, parse);
+        EXPECT_EQ(file.plane_bytes == 0, kept == KeptPlanes::all);
+        const std::vector<LayerPart> parts = file.in_memory();
+        for (const LayerPart& part : parts) {
             ASSERT_EQ(part.layers.size(), heights.size()) << "each part has each plane";
             for (std::size_t i = 0; i < heights.size(); ++i) {
                 const Layer& layer = part.layers[i];
@@ -138,14 +198,18 @@ TEST(LayerAssembly, StacksLayersWithoutGaps) {
                 EXPECT_EQ(tops ? layer.top : layer.bottom, heights[i]);
                 EXPECT_EQ(layer.z, layer.bottom + (layer.top - layer.bottom) / 2);
                 EXPECT_TRUE(in_normal_form(layer));
-                EXPECT_EQ(layer.rings, &part == &file.parts[i % 2] ? 1U : 0U);
+                EXPECT_EQ(layer.rings, &part == &parts[i % 2] ? 1U : 0U);
                 if (i > 0) {
                     EXPECT_EQ(layer.bottom, part.layers[i - 1].top);
                 }
             }
         }
-        EXPECT_EQ(tops ? file.parts[0].layers.front().bottom : file.parts[0].layers.back().top, other);
+        EXPECT_EQ(tops ? parts[0].layers.front().bottom : parts[0].layers.back().top, other);
         EXPECT_TRUE(file.warnings.empty());
+        for (const PlaneContent& content : file.contents)
+            EXPECT_EQ(content.points, 3U);
+        EXPECT_EQ(file.largest_coordinate, 3);
+        EXPECT_EQ(file.parts[1].box.max, (Point3{2, 3, parts[1].layers.back().top}));
         for (const RawLayer& layer : raw)
             EXPECT_TRUE(layer.points.empty()) << "their memory is free";
     }

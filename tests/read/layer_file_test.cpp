@@ -64,24 +64,16 @@ TEST(LayerFile, IsOfTheKindThatItsBeginningSaysWhateverItsTextsHold) {
     EXPECT_EQ(text.find("$$"), std::string::npos) << text;
 }
 
-TEST(LayerFile, WhosePartsTheCallerMadeUnequalIsNotMerged) {
-    LayerFile file = read_text(square);
-    file.parts.push_back({.label = "other", .layers = {}});
-    test::expect_error(ErrorKind::usage, {"layers", "\"other\" has 0 layers", "has 1"},
-                       [&] { static_cast<void>(file.merged()); });
-    file.parts = {};
-    EXPECT_TRUE(file.merged().empty());
-}
-
 TEST(LayerFile, MayBePackedWithGzip) {
     const std::string content = compressed(square);
     if (content.empty())
         GTEST_SKIP() << "no gzip program";
     const LayerFile file = read_compressed(content);
+    const std::vector<LayerPart> parts = file.in_memory();
     EXPECT_EQ(file.format, "cli-ascii");
     ASSERT_EQ(file.parts.size(), 1U);
-    ASSERT_EQ(file.parts.front().layers.size(), 1U);
-    EXPECT_EQ(file.parts.front().layers[0].points.size(), 4U);
+    ASSERT_EQ(parts.front().layers.size(), 1U);
+    EXPECT_EQ(parts.front().layers[0].points.size(), 4U);
 }
 
 TEST(LayerFile, WhatIsUnpackedCountsForTheLimit) {
@@ -125,43 +117,44 @@ TEST(LayerFile, WhoseLayersAreNotInMemoryHasTheSamePlanes) {
         const std::string text = many_pieces(settings);
         const auto bytes = std::as_bytes(std::span(text));
         const LayerFile held = read_layers(bytes, "a.cli", {}, {.threads = 1});
-        ASSERT_GT(held.planes().size(), 1000U);
+        const std::vector<LayerPart> held_parts = held.in_memory();
+        ASSERT_GT(held.planes.size(), 1000U);
         EXPECT_GT(held.parts.size(), settings ? 10U : 2U);
         double largest = 0;
         double largest_of_hatches = 0;
-        for (const LayerPart& part : held.parts)
-            for (std::size_t i = 0; i < held.planes().size(); ++i) {
+        for (const LayerPart& part : held_parts)
+            for (std::size_t i = 0; i < held.planes.size(); ++i) {
                 largest = std::max(largest, largest_coordinate(part.layers[i].points.span()));
                 largest_of_hatches = std::max(largest_of_hatches, largest_coordinate(part.hatches_of(i)));
             }
         std::vector<std::uint64_t> hashes;
-        for (std::size_t i = 0; i < held.planes().size(); ++i)
+        for (std::size_t i = 0; i < held.planes.size(); ++i)
             hashes.push_back(content_hash(held.plane(i)));
         for (const unsigned threads : test::thread_counts()) {
             const LayerFile file =
-                read_layers(bytes, "a.cli", {.layers = LayersKept::none}, {.threads = threads});
-            ASSERT_TRUE(file.stream);
+                read_layers(bytes, "a.cli", {.kept = KeptPlanes::none}, {.threads = threads});
+            ASSERT_GT(file.plane_bytes, 0U);
             EXPECT_EQ(file.warnings, held.warnings);
             ASSERT_EQ(file.parts.size(), held.parts.size());
             for (std::size_t i = 0; i < file.parts.size(); ++i) {
-                EXPECT_TRUE(file.parts[i].layers.empty());
                 EXPECT_EQ(file.parts[i].label, held.parts[i].label);
-                EXPECT_EQ(file.hatch_lines(i), held.hatch_lines(i));
+                EXPECT_EQ(file.parts[i].hatch_lines, held.parts[i].hatch_lines);
             }
-            EXPECT_EQ(file.stream->largest_coordinate, largest);
-            EXPECT_EQ(file.stream->largest_hatch_coordinate, largest_of_hatches);
-            const std::vector<PlaneContent> contents[2] = {file.contents(), held.contents()};
-            ASSERT_EQ(contents[0].size(), contents[1].size());
-            for (std::size_t i = 0; i < contents[0].size(); ++i) {
-                ASSERT_EQ(contents[0][i].contours, contents[1][i].contours);
-                ASSERT_EQ(contents[0][i].hatch_lines, contents[1][i].hatch_lines);
+            for (const LayerFile* const any : {&file, &held}) {
+                EXPECT_EQ(any->largest_coordinate, largest);
+                EXPECT_EQ(any->largest_hatch_coordinate, largest_of_hatches);
             }
-            ASSERT_EQ(file.planes().size(), held.planes().size());
-            for (std::size_t i = 0; i < file.planes().size(); ++i)
+            ASSERT_EQ(file.contents.size(), held.contents.size());
+            for (std::size_t i = 0; i < file.contents.size(); ++i) {
+                ASSERT_EQ(file.contents[i].points, held.contents[i].points);
+                ASSERT_EQ(file.contents[i].hatch_lines, held.contents[i].hatch_lines);
+            }
+            ASSERT_EQ(file.planes.size(), held.planes.size());
+            for (std::size_t i = 0; i < file.planes.size(); ++i)
                 ASSERT_EQ(content_hash(file.plane(i)), hashes[i]) << i;
         }
-        const LayerStack merged = read_layers(bytes, "a.cli", {.layers = LayersKept::none}).merged();
-        ASSERT_EQ(merged.size(), held.planes().size());
+        const LayerStack merged = read_layers(bytes, "a.cli", {.kept = KeptPlanes::none}).merged();
+        ASSERT_EQ(merged.size(), held.planes.size());
         EXPECT_EQ(content_hash(merged[30]), content_hash(held.merged()[30]));
     }
 }
@@ -181,8 +174,8 @@ TEST(LayerFile, WhoseLayersAreNotInMemoryNeedsNoMemoryForThem) {
         static_cast<void>(read_layers(bytes, "a.cli", {.max_memory = max_memory}, {.threads = 1}));
     });
     const LayerFile file = read_layers(
-        bytes, "a.cli", {.max_memory = max_memory, .layers = LayersKept::if_faster}, {.threads = 1});
-    for (std::size_t i = 0; i < file.planes().size(); ++i)
+        bytes, "a.cli", {.max_memory = max_memory, .kept = KeptPlanes::if_faster}, {.threads = 1});
+    for (std::size_t i = 0; i < file.planes.size(); ++i)
         ASSERT_EQ(file.plane(i).polylines.front().points.size(), 2000U);
 }
 
@@ -205,36 +198,47 @@ std::string binary_layers() {
     return bytes;
 }
 
-TEST(LayerFile, KeepsLayersInAmpleMemory) {
-    const std::string bytes = binary_layers();
-    const auto kept = [&](LayersKept layers, std::uint64_t max_memory) {
+TEST(LayerFile, KeepsPlanesOfTextInAmpleMemory) {
+    const auto kept = [](const std::string& bytes, KeptPlanes planes, std::uint64_t max_memory) {
         const LayerFile file = read_layers(std::as_bytes(std::span(bytes)), "a.cli",
-                                           {.max_memory = max_memory, .layers = layers}, {.threads = 1});
-        EXPECT_EQ(file.planes().size(), 100U);
-        return file.stream == nullptr;
+                                           {.max_memory = max_memory, .kept = planes}, {.threads = 1});
+        EXPECT_GE(file.planes.size(), 100U);
+        return file.plane_bytes == 0;
     };
-    const std::uint64_t ample = 8 * bytes.size();
-    EXPECT_TRUE(kept(LayersKept::if_ample, 0));
-    EXPECT_TRUE(kept(LayersKept::if_ample, ample));
-    EXPECT_FALSE(kept(LayersKept::if_ample, ample - 1));
-    EXPECT_FALSE(kept(LayersKept::if_faster, ample));
+    std::string text = "$$HEADERSTART\n$$ASCII\n$$UNITS/0.001\n$$VERSION/200\n$$HEADEREND\n$$GEOMETRYSTART\n";
+    for (int i = 0; i < 100; ++i) {
+        text += fmt::format("$$LAYER/{}\n$$POLYLINE/1,1,1001", i);
+        for (int k = 0; k <= 1000; ++k)
+            text += fmt::format(",{},{}", k % 1000, k * k % 1000);
+        text += '\n';
+    }
+    text += "$$GEOMETRYEND\n";
+    const std::uint64_t ample = 8 * text.size();
+    EXPECT_TRUE(kept(text, KeptPlanes::all, ample - 1));
+    EXPECT_TRUE(kept(text, KeptPlanes::if_faster, 0));
+    EXPECT_TRUE(kept(text, KeptPlanes::if_faster, ample));
+    EXPECT_FALSE(kept(text, KeptPlanes::if_faster, ample - 1));
+    EXPECT_FALSE(kept(text, KeptPlanes::none, ample));
+    const std::string binary = binary_layers();
+    EXPECT_TRUE(kept(binary, KeptPlanes::all, 0));
+    EXPECT_FALSE(kept(binary, KeptPlanes::if_faster, 0));
 }
 
 TEST(LayerFile, HasNoMorePlanesAtOnceThanFitTheMemory) {
     const std::string bytes = binary_layers();
-    const auto threads = [&](LayersKept layers, std::uint64_t more, unsigned wished) {
+    const auto threads = [&](KeptPlanes kept, std::uint64_t more, unsigned wished) {
         // Memory for the bytes, a piece of them as points, and the planes without contours.
         const std::uint64_t base = bytes.size() + 1'000'000;
         const LayerFile file = read_layers(std::as_bytes(std::span(bytes)), "a.cli",
-                                           {.max_memory = base + more, .layers = layers}, {.threads = 1});
+                                           {.max_memory = base + more, .kept = kept}, {.threads = 1});
         return file.for_planes({.threads = wished}).threads;
     };
-    EXPECT_EQ(threads(LayersKept::all, 1'000'000, 8), 8U);
-    EXPECT_EQ(threads(LayersKept::none, 100'000'000, 8), 8U);
-    EXPECT_EQ(threads(LayersKept::none, 0, 1), 1U);
+    EXPECT_EQ(threads(KeptPlanes::all, 1'000'000, 8), 8U);
+    EXPECT_EQ(threads(KeptPlanes::none, 100'000'000, 8), 8U);
+    EXPECT_EQ(threads(KeptPlanes::none, 0, 1), 1U);
     unsigned last = 0;
     for (const std::uint64_t more : {0, 100'000, 200'000, 400'000, 800'000, 1'600'000}) {
-        const unsigned now = threads(LayersKept::none, more, 1000);
+        const unsigned now = threads(KeptPlanes::none, more, 1000);
         EXPECT_GE(now, std::max(1U, last)) << more;
         EXPECT_LE(now, (1'000'000 + more) / (200 * sizeof(Point2))) << more;
         last = now;

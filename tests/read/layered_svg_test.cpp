@@ -45,37 +45,41 @@ TEST(ReadLayeredSvg, HeightsAndPolygonsOfTheNewerForm) {
     const LayerFile file = read(svg("<g id=\"layer0\" slic3r:z=\"0.5\" slic3r:slice-z=\"0.25\" "
                                     "slic3r:layer-height=\"0.5\">" +
                                     square + hole + "</g>\n"));
-    ASSERT_EQ(file.parts.at(0).layers.size(), 1U);
-    EXPECT_DOUBLE_EQ(measure(file.parts.at(0).layers[0]).area_mm2, 96);
-    EXPECT_DOUBLE_EQ(file.parts.at(0).layers[0].z, 0.25);
-    EXPECT_DOUBLE_EQ(file.parts.at(0).layers[0].bottom, 0);
-    EXPECT_DOUBLE_EQ(file.parts.at(0).layers[0].top, 0.5);
+    const std::vector<LayerPart> parts = file.in_memory();
+    ASSERT_EQ(parts.at(0).layers.size(), 1U);
+    EXPECT_DOUBLE_EQ(measure(parts.at(0).layers[0]).area_mm2, 96);
+    EXPECT_DOUBLE_EQ(parts.at(0).layers[0].z, 0.25);
+    EXPECT_DOUBLE_EQ(parts.at(0).layers[0].bottom, 0);
+    EXPECT_DOUBLE_EQ(parts.at(0).layers[0].top, 0.5);
 }
 
 TEST(ReadLayeredSvg, HeightsOfTheOlderFormAreMillionths) {
     const LayerFile file = read(svg("<g id=\"layer0\" slic3r:z=\"2.5e-07\">" + square +
                                     "</g><g id=\"layer1\" slic3r:z=\"7.5e-07\">" + square + "</g>"));
-    ASSERT_EQ(file.parts.at(0).layers.size(), 2U);
-    EXPECT_NEAR(file.parts.at(0).layers[0].z, 0.25, 1e-12);
-    EXPECT_NEAR(file.parts.at(0).layers[1].bottom, 0.5, 1e-12);
-    EXPECT_NEAR(file.parts.at(0).layers[1].top, 1.0, 1e-12);
+    const std::vector<LayerPart> parts = file.in_memory();
+    ASSERT_EQ(parts.at(0).layers.size(), 2U);
+    EXPECT_NEAR(parts.at(0).layers[0].z, 0.25, 1e-12);
+    EXPECT_NEAR(parts.at(0).layers[1].bottom, 0.5, 1e-12);
+    EXPECT_NEAR(parts.at(0).layers[1].top, 1.0, 1e-12);
 }
 
 TEST(ReadLayeredSvg, LayersAreListedByTheirCuts) {
     const LayerFile file = read(svg("<g slic3r:z=\"1\" slic3r:slice-z=\"0.9\">" + square +
                                     "</g><g slic3r:z=\"1.5\" slic3r:slice-z=\"0.2\"/>"));
-    ASSERT_EQ(file.parts.at(0).layers.size(), 2U);
-    EXPECT_DOUBLE_EQ(file.parts.at(0).layers[0].z, 0.2);
-    EXPECT_DOUBLE_EQ(file.parts.at(0).layers[1].z, 0.9);
-    EXPECT_EQ(file.parts.at(0).layers[1].rings, 1U);
-    EXPECT_EQ(file.parts.at(0).layers[1].index, 1U);
+    const std::vector<LayerPart> parts = file.in_memory();
+    ASSERT_EQ(parts.at(0).layers.size(), 2U);
+    EXPECT_DOUBLE_EQ(parts.at(0).layers[0].z, 0.2);
+    EXPECT_DOUBLE_EQ(parts.at(0).layers[1].z, 0.9);
+    EXPECT_EQ(parts.at(0).layers[1].rings, 1U);
+    EXPECT_EQ(parts.at(0).layers[1].index, 1U);
 }
 
 TEST(ReadLayeredSvg, LayersWhoseHeightsWereRoundedEachByItselfMeet) {
     const LayerFile file = read(svg("<g slic3r:z=\"0.0333\" slic3r:layer-height=\"0.0333\">" + square +
                                     "</g><g slic3r:z=\"0.0667\" slic3r:layer-height=\"0.0333\">" + square +
                                     "</g><g slic3r:z=\"0.2\" slic3r:layer-height=\"0.0333\"/>"));
-    const LayerStack& layers = file.parts.at(0).layers;
+    const std::vector<LayerPart> parts = file.in_memory();
+    const LayerStack& layers = parts.at(0).layers;
     ASSERT_EQ(layers.size(), 3U);
     EXPECT_EQ(layers[1].bottom, layers[0].top);
     EXPECT_NEAR(layers[2].bottom, 0.1667, 1e-12); // a gap
@@ -87,13 +91,14 @@ TEST(ReadLayeredSvg, GroupsOfOneHeightAreOneLayer) {
                         "</g><g slic3r:z=\"2\">" + square + "</g>"));
     };
     const LayerFile file = groups("");
-    const LayerStack& layers = file.parts.at(0).layers;
+    const std::vector<LayerPart> parts = file.in_memory();
+    const LayerStack& layers = parts.at(0).layers;
     ASSERT_EQ(layers.size(), 2U);
     EXPECT_EQ(layers[0].rings, 2U);
     EXPECT_DOUBLE_EQ(layers[0].bottom, 0);
     EXPECT_EQ(file.warnings,
               std::vector<std::string>{"1 layer has the height of the one before; it was joined with that"});
-    EXPECT_EQ(groups(" slic3r:slice-z=\"0.9\"").parts.at(0).layers.size(), 3U); // another cut
+    EXPECT_EQ(groups(" slic3r:slice-z=\"0.9\"").in_memory().at(0).layers.size(), 3U); // another cut
 }
 
 TEST(ReadLayeredSvg, OutlinesOutsideOfLayersAreReportedOf) {
@@ -102,7 +107,8 @@ TEST(ReadLayeredSvg, OutlinesOutsideOfLayersAreReportedOf) {
          std::vector<std::string>{square, "<g id=\"layer7\">" + square + "</g>", "<g>" + layer + "</g>",
                                   "<path d=\"M 0 0 L 1 1\"/>"}) {
         const LayerFile file = read(svg(lost + layer));
-        EXPECT_EQ(file.parts.at(0).layers.size(), 1U);
+        const std::vector<LayerPart> parts = file.in_memory();
+        EXPECT_EQ(parts.at(0).layers.size(), 1U);
         EXPECT_EQ(file.warnings,
                   std::vector<std::string>{"1 outline lies outside of the groups with slic3r:z; it "
                                            "was left out (first at line 3)"});
@@ -123,7 +129,8 @@ TEST(ReadLayeredSvg, AnAttributeThatIsNoNumberToItsEndIsRefused) {
 
 TEST(ReadLayeredSvg, NoRangeIsUpsideDown) {
     const LayerFile file = read(svg("<g slic3r:z=\"-1\">" + square + "</g>"));
-    EXPECT_EQ(file.parts.at(0).layers.at(0).bottom, file.parts.at(0).layers.at(0).top);
+    const std::vector<LayerPart> parts = file.in_memory();
+    EXPECT_EQ(parts.at(0).layers.at(0).bottom, parts.at(0).layers.at(0).top);
     expect_error(svg("<g slic3r:z=\"1\" slic3r:layer-height=\"-0.5\"/>"), "must not be below 0");
 }
 
@@ -135,14 +142,15 @@ TEST(ReadLayeredSvg, NumbersThatCouldOverflowAreRefused) {
 TEST(ReadLayeredSvg, PathsAreTurnedBackUpright) {
     const LayerFile file = read(svg("<g slic3r:z=\"0.5\" slic3r:slice-z=\"0.25\" slic3r:layer-height=\"0.5\">"
                                     "<path d=\"M 0 10 10 10 10 0 0 0 z M 2 6 L 2 8 h 2 V 6 Z\"/></g>"));
-    ASSERT_EQ(file.parts.at(0).layers[0].rings, 2U);
-    EXPECT_GT(ring_area(file.parts.at(0).layers[0].contour(0)), 0);
-    EXPECT_DOUBLE_EQ(std::abs(ring_area(file.parts.at(0).layers[0].contour(1))), 4);
+    const std::vector<LayerPart> parts = file.in_memory();
+    ASSERT_EQ(parts.at(0).layers[0].rings, 2U);
+    EXPECT_GT(ring_area(parts.at(0).layers[0].contour(0)), 0);
+    EXPECT_DOUBLE_EQ(std::abs(ring_area(parts.at(0).layers[0].contour(1))), 4);
 }
 
 TEST(ReadLayeredSvg, WhatFollowsTheEndOfARingBeginsWhereTheRingDid) {
     const auto rings = [](const std::string& path) {
-        return read(svg("<g slic3r:z=\"0.5\"><path d=\"" + path + "\"/></g>")).parts.at(0).layers.at(0);
+        return read(svg("<g slic3r:z=\"0.5\"><path d=\"" + path + "\"/></g>")).in_memory().at(0).layers.at(0);
     };
     const Layer moved = rings("M 1 1 H 5 V 5 H 1 Z M 11 1 H 15 V 5 H 11 Z");
     EXPECT_EQ(moved.rings, 2U);
@@ -156,7 +164,8 @@ TEST(ReadLayeredSvg, PolylinesAndPathsThatStayOpenAreChains) {
     for (const std::string open : {"<polyline points=\"1,1 2,2\"/>", "<path d=\"M 1 1 L 2 2\"/>",
                                    "<path d=\"M 0 0 H 1 V 1 Z M 1 1 L 2 2\"/>"}) {
         const LayerFile file = read(svg("<g slic3r:z=\"0.5\">" + square + open + "</g>"));
-        EXPECT_EQ(file.parts.at(0).layers[0].open_chains(), 1U);
+        const std::vector<LayerPart> parts = file.in_memory();
+        EXPECT_EQ(parts.at(0).layers[0].open_chains(), 1U);
         EXPECT_EQ(file.warnings, std::vector<std::string>{"1 contour is open (first at line 3)"});
     }
 }
@@ -178,7 +187,8 @@ TEST(ReadLayeredSvg, HolesAreHolesInWhateverDirectionTheyAreDrawn) {
           {even_odd.c_str(), with(path, "fill-rule=\"nonzero\" "), 68.0, false}}) {
         const LayerFile file =
             read(svg("<g slic3r:z=\"0.5\" " + std::string(group) + ">" + content + "</g>"));
-        EXPECT_DOUBLE_EQ(measure(file.parts.at(0).layers[0]).area_mm2, area) << content;
+        const std::vector<LayerPart> parts = file.in_memory();
+        EXPECT_DOUBLE_EQ(measure(parts.at(0).layers[0]).area_mm2, area) << content;
         EXPECT_EQ(
             file.warnings,
             reversed
@@ -203,8 +213,9 @@ TEST(ReadLayeredSvg, TheViewBoxGivesTheScale) {
           {"height=\"2cm\" viewBox=\"0,0,10,10\"", 2.0, 0.0},
           {"width=\"100%\" height=\"100%\" viewBox=\"0 0 10 10\"", 1.0, 0.0}}) {
         const LayerFile file = sized(size);
+        const std::vector<LayerPart> parts = file.in_memory();
         EXPECT_TRUE(file.warnings.empty()) << size;
-        const Layer& layer = file.parts.at(0).layers[0];
+        const Layer& layer = parts.at(0).layers[0];
         EXPECT_NEAR(measure(layer).area_mm2, 99 * scale * scale, 1e-9) << size;
         EXPECT_NEAR(layer.contour(0)[0].x, -corner * scale, 1e-12) << size;
         EXPECT_NEAR(layer.contour(0)[0].y, -corner * scale, 1e-12) << size;
@@ -218,9 +229,10 @@ TEST(ReadLayeredSvg, TheViewBoxGivesTheScale) {
           {"width=\"20mm\" height=\"10mm\" viewBox=\"0 0 10 10\"", "no common scale of x and y"},
           {"width=\"20mm\" height=\"20mm\" viewBox=\"0 0 0 10\"", "no common scale"}}) {
         const LayerFile file = sized(size);
+        const std::vector<LayerPart> parts = file.in_memory();
         ASSERT_EQ(file.warnings.size(), 1U) << size;
         EXPECT_NE(file.warnings[0].find(warning), std::string::npos) << file.warnings[0];
-        EXPECT_DOUBLE_EQ(measure(file.parts.at(0).layers[0]).area_mm2, 99);
+        EXPECT_DOUBLE_EQ(measure(parts.at(0).layers[0]).area_mm2, 99);
     }
 }
 
@@ -279,8 +291,9 @@ TEST(ReadLayeredSvg, APublishedSampleHasItsArea) {
     if (!std::filesystem::exists(path))
         GTEST_SKIP() << "no sample at " << path;
     const LayerFile file = read_layers(path.string());
-    ASSERT_EQ(file.parts.at(0).layers.size(), 2U);
-    for (const Layer& layer : file.parts.at(0).layers)
+    const std::vector<LayerPart> parts = file.in_memory();
+    ASSERT_EQ(parts.at(0).layers.size(), 2U);
+    for (const Layer& layer : parts.at(0).layers)
         EXPECT_NEAR(measure(layer).area_mm2, 96, 1e-9);
 }
 

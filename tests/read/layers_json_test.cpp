@@ -29,20 +29,21 @@ std::string layer(const std::string& part, const std::string& z = "1") {
 TEST(ReadLayersJson, ReportsAllThatALayerHas) {
     const LayerFile found = read(file(layer(R"({"rings": [[0, 0, 1e1, 0, 0, 10]], "chains": [[1, 1, 2, 2]],
                                                "hatches": [0, 1, 2, 3]})")));
+    const std::vector<LayerPart> found_parts = found.in_memory();
     EXPECT_EQ(found.parts.front().label, "\xc3\xa4\xf0\x9f\x98\x80\\x0a");
-    const Layer& only = found.parts.front().layers.front();
+    const Layer& only = found_parts.front().layers.front();
     EXPECT_EQ(only.index, 5U);
     EXPECT_EQ(only.z, 1);
     EXPECT_EQ(measure(only).area_mm2, 50);
     EXPECT_EQ(only.open_chains(), 1U);
-    ASSERT_EQ(found.parts.front().hatches_of(0).size(), 2U);
-    EXPECT_EQ(found.parts.front().hatches_of(0)[1], (Point2{2, 3}));
+    ASSERT_EQ(found_parts.front().hatches_of(0).size(), 2U);
+    EXPECT_EQ(found_parts.front().hatches_of(0)[1], (Point2{2, 3}));
 }
 
 TEST(ReadLayersJson, TakesAByteOrderMarkInFront) {
     const std::string text = file(layer("{\"rings\": []}"));
-    EXPECT_EQ(read("\xEF\xBB\xBF" + text).parts.front().layers.size(), 1U);
-    EXPECT_EQ(read("\xEF\xBB\xBF\n" + text).parts.front().layers.size(), 1U);
+    EXPECT_EQ(read("\xEF\xBB\xBF" + text).in_memory().front().layers.size(), 1U);
+    EXPECT_EQ(read("\xEF\xBB\xBF\n" + text).in_memory().front().layers.size(), 1U);
 }
 
 /// A document with something more in front of its end.

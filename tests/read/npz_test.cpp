@@ -58,18 +58,18 @@ std::string archive(const Arrays& arrays) {
 /// An empty layer from 0 to 0 with a hatch line, where `name` is another array.
 std::string with(const std::string& name, const NumpyArray& other) {
     Arrays arrays{{"points", {"<f8", "0, 2", ""}},
-                                             {"offsets", {"<i8", "1,", numbers({0})}},
-                                             {"closed", {"|b1", "0,", ""}},
-                                             {"layer", {"<i8", "0,", ""}},
-                                             {"part", {"<i8", "0,", ""}},
-                                             {"index", {"<i8", "1,", numbers({0})}},
-                                             {"z", {"<f8", "1,", numbers({0})}},
-                                             {"bottom", {"<f8", "1,", numbers({0})}},
-                                             {"top", {"<f8", "1,", numbers({0})}},
-                                             {"labels", {"<U1", "1,", std::string("a\0\0\0", 4)}},
-                                             {"hatches", {"<f8", "1, 2, 2", numbers({0, 0, 0, 0})}},
-                                             {"hatch_layer", {"<i8", "1,", numbers({0})}},
-                                             {"hatch_part", {"<i8", "1,", numbers({0})}}};
+                  {"offsets", {"<i8", "1,", numbers({0})}},
+                  {"closed", {"|b1", "0,", ""}},
+                  {"layer", {"<i8", "0,", ""}},
+                  {"part", {"<i8", "0,", ""}},
+                  {"index", {"<i8", "1,", numbers({0})}},
+                  {"z", {"<f8", "1,", numbers({0})}},
+                  {"bottom", {"<f8", "1,", numbers({0})}},
+                  {"top", {"<f8", "1,", numbers({0})}},
+                  {"labels", {"<U1", "1,", std::string("a\0\0\0", 4)}},
+                  {"hatches", {"<f8", "1, 2, 2", numbers({0, 0, 0, 0})}},
+                  {"hatch_layer", {"<i8", "1,", numbers({0})}},
+                  {"hatch_part", {"<i8", "1,", numbers({0})}}};
     arrays[name] = other;
     return archive(arrays);
 }
@@ -115,22 +115,22 @@ TEST(ReadNpz, GivesLayersThatComeInAnyOrderAlsoIfTheyAreNotInMemory) {
                                        {"hatches", {"<f8", "4, 2, 2", lengths(ends)}},
                                        {"hatch_layer", {"<i8", "4,", numbers({2, 2, 1, 2})}},
                                        {"hatch_part", {"<i8", "4,", numbers({0, 1, 0, 1})}}});
-    const auto read = [&](LayersKept kept) {
-        return read_layers(std::as_bytes(std::span(bytes)), "test.npz", {.layers = kept});
+    const auto read = [&](KeptPlanes kept) {
+        return read_layers(std::as_bytes(std::span(bytes)), "test.npz", {.kept = kept});
     };
-    const LayerFile held = read(LayersKept::all);
-    EXPECT_EQ(held.parts.at(0).layers.at(2).contours(), 2U);
-    EXPECT_EQ(held.parts.at(1).hatches_of(2).size(), 4U);
-    const LayerFile file = read(LayersKept::none);
-    ASSERT_TRUE(file.stream);
-    EXPECT_EQ(file.hatch_lines(0), 2U);
-    EXPECT_EQ(file.hatch_lines(1), 2U);
-    EXPECT_EQ(file.stream->largest_coordinate, 44);
-    EXPECT_EQ(file.stream->largest_hatch_coordinate, 9);
-    const std::vector<PlaneContent> contents[2] = {file.contents(), held.contents()};
+    const LayerFile held = read(KeptPlanes::all);
+    const std::vector<LayerPart> held_parts = held.in_memory();
+    EXPECT_EQ(held_parts.at(0).layers.at(2).contours(), 2U);
+    EXPECT_EQ(held_parts.at(1).hatches_of(2).size(), 4U);
+    const LayerFile file = read(KeptPlanes::none);
+    ASSERT_GT(file.plane_bytes, 0U);
+    EXPECT_EQ(file.parts[0].hatch_lines, 2U);
+    EXPECT_EQ(file.parts[1].hatch_lines, 2U);
+    EXPECT_EQ(file.largest_coordinate, 44);
+    EXPECT_EQ(file.largest_hatch_coordinate, 9);
     for (std::size_t i = 0; i < 4; ++i) {
-        EXPECT_EQ(contents[0][i].contours, contents[1][i].contours) << i;
-        EXPECT_EQ(contents[0][i].hatch_lines, contents[1][i].hatch_lines) << i;
+        EXPECT_EQ(file.contents[i].points, held.contents[i].points) << i;
+        EXPECT_EQ(file.contents[i].hatch_lines, held.contents[i].hatch_lines) << i;
         EXPECT_EQ(content_hash(file.plane(i)), content_hash(held.plane(i))) << i;
     }
 }

@@ -197,8 +197,9 @@ TEST(ShortenedFile, OfLayersIsReadAsItWasOpened) {
             const ByteSource source = open_bytes(path, {}, most);
             fs::resize_file(path, 0);
             const LayerFile file = read_unpacked_layers(source, {}, {});
+            const std::vector<LayerPart> parts = file.in_memory();
             ASSERT_EQ(file.parts.size(), 1U);
-            EXPECT_EQ(file.parts.front().layers.size(), layers.size());
+            EXPECT_EQ(parts.front().layers.size(), layers.size());
         }
     }
     EXPECT_GE(formats, 8U);

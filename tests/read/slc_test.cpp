@@ -47,8 +47,9 @@ std::string two_layers() {
 }
 
 void expect_square(const LayerFile& file, double scale = 1) {
+    const std::vector<LayerPart> parts = file.in_memory();
     ASSERT_EQ(file.parts.size(), 1U);
-    const LayerStack& layers = file.parts.front().layers;
+    const LayerStack& layers = parts.front().layers;
     ASSERT_EQ(layers.size(), 2U);
     EXPECT_DOUBLE_EQ(measure(layers[1]).area_mm2, 100 * scale * scale);
     EXPECT_DOUBLE_EQ(layers[0].bottom, 0);
@@ -75,11 +76,13 @@ TEST(ReadSlc, WhatIsOddIsReported) {
     EXPECT_EQ(read(header() + layer + square + bits(0.0F) + bits(0xFFFFFFFFU)).warnings.size(),
               1U); // end too low
     const LayerFile open = read(header() + layer + contour({0, 0, 1, 0, 1, 1}) + end_at_one);
+    const std::vector<LayerPart> open_parts = open.in_memory();
     EXPECT_EQ(open.warnings.size(), 1U);
-    EXPECT_EQ(open.parts.front().layers.front().rings, 1U);
+    EXPECT_EQ(open_parts.front().layers.front().rings, 1U);
     const LayerFile web =
         read(header("-SLCVER 2.0 -UNIT MM -TYPE WEB ") + layer + contour({0, 0, 1, 0, 1, 1}) + end_at_one);
-    EXPECT_EQ(web.parts.front().layers.front().open_chains(), 1U);
+    const std::vector<LayerPart> web_parts = web.in_memory();
+    EXPECT_EQ(web_parts.front().layers.front().open_chains(), 1U);
     EXPECT_TRUE(web.warnings.empty());
 }
 

@@ -74,9 +74,10 @@ TEST(ReadSlices3mf, StacksArePartsWhereTheBuildPutsThem) {
     const LayerFile file =
         read(model(stack(1, slice("0.5") + "<t:slice ztop=\"1\"/>") + object(2, 1),
                    "<item objectid=\"2\" transform=\"1 0 0 0 1 0 0 0 1 10 20 3\"/>", "centimeter"));
+    const std::vector<LayerPart> parts = file.in_memory();
     ASSERT_EQ(file.parts.size(), 1U);
     EXPECT_EQ(file.parts[0].label, "body");
-    const LayerStack& layers = file.parts[0].layers;
+    const LayerStack& layers = parts[0].layers;
     ASSERT_EQ(layers.size(), 2U);
     EXPECT_DOUBLE_EQ(layers[0].bottom, 30);
     EXPECT_DOUBLE_EQ(layers[0].top, 35);
@@ -88,8 +89,9 @@ TEST(ReadSlices3mf, StacksArePartsWhereTheBuildPutsThem) {
 TEST(ReadSlices3mf, MirrorsKeepMaterialToTheLeft) {
     const LayerFile file = read(model(stack(1, slice("1")) + object(2, 1),
                                       "<item objectid=\"2\" transform=\"-1 0 0 0 1 0 0 0 1 0 0 0\"/>"));
-    EXPECT_DOUBLE_EQ(measure(file.parts[0].layers[0]).area_mm2, 8);
-    EXPECT_EQ(file.parts[0].layers[0].contour(0)[0], (Point2{-5, 0}));
+    const std::vector<LayerPart> parts = file.in_memory();
+    EXPECT_DOUBLE_EQ(measure(parts[0].layers[0]).area_mm2, 8);
+    EXPECT_EQ(parts[0].layers[0].contour(0)[0], (Point2{-5, 0}));
 }
 
 TEST(ReadSlices3mf, StacksAreFoundInOtherPartsAndUnderComponents) {
@@ -100,9 +102,10 @@ TEST(ReadSlices3mf, StacksAreFoundInOtherPartsAndUnderComponents) {
                        "<component objectid=\"2\"/></components></object>",
                    "<item objectid=\"3\"/>"),
              model(stack(7, slice("1") + slice("2")), ""));
+    const std::vector<LayerPart> parts = file.in_memory();
     ASSERT_EQ(file.parts.size(), 2U);
-    EXPECT_DOUBLE_EQ(measure(file.parts[0].layers[1]).area_mm2, 32);
-    EXPECT_DOUBLE_EQ(measure(file.parts[1].layers[1]).area_mm2, 8);
+    EXPECT_DOUBLE_EQ(measure(parts[0].layers[1]).area_mm2, 32);
+    EXPECT_DOUBLE_EQ(measure(parts[1].layers[1]).area_mm2, 8);
 }
 
 // The production extension: what is built stands in a part of its own, with the slices of its objects.
@@ -116,20 +119,22 @@ TEST(ReadSlices3mf, ObjectsOfOtherPartsBringTheirSlices) {
     const std::string path = "p:path=\"/2D/other.model\"";
     const LayerFile item =
         read(model("", "<item objectid=\"9\" " + path + "/>", "millimeter", production), other);
+    const std::vector<LayerPart> item_parts = item.in_memory();
     ASSERT_EQ(item.parts.size(), 1U);
-    ASSERT_EQ(item.parts[0].layers.size(), 2U);
+    ASSERT_EQ(item_parts[0].layers.size(), 2U);
     EXPECT_EQ(item.parts[0].label, "body");
-    EXPECT_DOUBLE_EQ(measure(item.parts[0].layers[0]).area_mm2, 800) << "in the unit of its part";
-    EXPECT_DOUBLE_EQ(item.parts[0].layers[0].top, 5);
+    EXPECT_DOUBLE_EQ(measure(item_parts[0].layers[0]).area_mm2, 800) << "in the unit of its part";
+    EXPECT_DOUBLE_EQ(item_parts[0].layers[0].top, 5);
     EXPECT_TRUE(item.warnings.empty());
     const LayerFile component =
         read(model("<object id=\"3\"><components><component objectid=\"10\" " + path +
                        " transform=\"1 0 0 0 1 0 0 0 1 0 0 2\"/></components></object>",
                    "<item objectid=\"3\"/>", "millimeter", production),
              other);
+    const std::vector<LayerPart> component_parts = component.in_memory();
     ASSERT_EQ(component.parts.size(), 1U);
-    EXPECT_DOUBLE_EQ(component.parts[0].layers[0].bottom, 2);
-    EXPECT_DOUBLE_EQ(component.parts[0].layers[0].top, 7);
+    EXPECT_DOUBLE_EQ(component_parts[0].layers[0].bottom, 2);
+    EXPECT_DOUBLE_EQ(component_parts[0].layers[0].top, 7);
 
     EXPECT_NE(error_of(model("", "<item objectid=\"8\" " + path + "/>", "millimeter", production), other)
                   .find("found no object 8 in '2D/other.model'"),
@@ -156,6 +161,7 @@ TEST(ReadSlices3mf, MarksOfSupportsAreKept) {
         stack(1, slice("1")) + typed(2, "model") + typed(3, "support") +
             "<object id=\"4\" type=\"support\"><components><component objectid=\"2\"/></components></object>",
         "<item objectid=\"2\"/><item objectid=\"3\"/><item objectid=\"4\"/>"));
+    const std::vector<LayerPart> parts = file.in_memory();
     ASSERT_EQ(file.parts.size(), 3U);
     EXPECT_FALSE(file.parts[0].support);
     EXPECT_TRUE(file.parts[1].support);
@@ -164,7 +170,7 @@ TEST(ReadSlices3mf, MarksOfSupportsAreKept) {
     std::vector<LayerStack> stacks;
     LayerFileInfo info{.layers = 1, .bottom = 0, .parts = {}};
     info.box.add(Point3{0, 0, 0});
-    for (const LayerPart& part : file.parts) {
+    for (const LayerPart& part : parts) {
         stacks.push_back(part.layers);
         info.parts.push_back({.label = part.label, .support = part.support});
     }
@@ -200,13 +206,14 @@ TEST(ReadSlices3mf, PartsOfDifferentHeightsAreDividedAtAll) {
     const LayerFile file = read(
         model(stack(1, slice("2") + slice("4")) + object(2, 1) + stack(3, slice("3"), "1") + object(4, 3),
               "<item objectid=\"2\"/><item objectid=\"4\"/>"));
+    const std::vector<LayerPart> parts = file.in_memory();
     ASSERT_EQ(file.parts.size(), 2U);
-    ASSERT_EQ(file.parts[0].layers.size(), 4U);
+    ASSERT_EQ(parts[0].layers.size(), 4U);
     const double areas[2][4] = {{8, 8, 8, 8}, {0, 8, 8, 0}};
     for (std::size_t part = 0; part < 2; ++part) {
         for (std::size_t i = 0; i < 4; ++i) {
-            EXPECT_DOUBLE_EQ(measure(file.parts[part].layers[i]).area_mm2, areas[part][i]);
-            EXPECT_DOUBLE_EQ(file.parts[part].layers[i].bottom, static_cast<double>(i));
+            EXPECT_DOUBLE_EQ(measure(parts[part].layers[i]).area_mm2, areas[part][i]);
+            EXPECT_DOUBLE_EQ(parts[part].layers[i].bottom, static_cast<double>(i));
         }
     }
 }
@@ -229,50 +236,50 @@ TEST(ReadSlices3mf, ReferencesAreReadAlikeByAnyNumberOfThreads) {
     EXPECT_EQ(one.warnings, (std::vector<std::string>{"3 contours are open (first at line 1000)",
                                                       "6 contours are open (first at line 1000)"}));
     ASSERT_EQ(one.parts.size(), 4U);
+    const std::vector<LayerPart> parts = one.in_memory();
     for (const unsigned threads : {2U, 3U, 7U, 16U}) {
         const LayerFile many = read(root, other, threads);
+        const std::vector<LayerPart> many_parts = many.in_memory();
         EXPECT_EQ(many.warnings, one.warnings);
         for (std::size_t part = 0; part < 4; ++part)
-            EXPECT_EQ(hashes(many.parts[part]), hashes(one.parts[part])) << threads << " threads";
+            EXPECT_EQ(hashes(many_parts[part]), hashes(parts[part])) << threads << " threads";
     }
 }
 
 /// Expects that a file whose layers are not in memory has the same contents as one whose layers are.
 void expect_same_stream(const std::string& root, const std::string& other = "") {
     const LayerFile held = read(root, other, 1);
+    const std::vector<LayerPart> held_parts = held.in_memory();
     for (const unsigned threads : {1U, 2U, 7U}) {
-        const LayerFile file = read(root, other, threads, {.layers = LayersKept::none});
-        ASSERT_TRUE(file.stream);
+        const LayerFile file = read(root, other, threads, {.kept = KeptPlanes::none});
+        ASSERT_GT(file.plane_bytes, 0U);
         EXPECT_EQ(file.warnings, held.warnings);
         ASSERT_EQ(file.parts.size(), held.parts.size());
-        ASSERT_EQ(file.stream->boxes.size(), held.parts.size());
         double largest = 0;
         for (std::size_t i = 0; i < file.parts.size(); ++i) {
-            EXPECT_TRUE(file.parts[i].layers.empty());
             EXPECT_EQ(file.parts[i].label, held.parts[i].label);
             EXPECT_EQ(file.parts[i].support, held.parts[i].support);
-            EXPECT_EQ(file.hatch_lines(i), 0U);
-            const Box3 box = part_box(held.parts[i].layers);
-            EXPECT_EQ(file.stream->boxes[i].empty(), box.empty());
+            EXPECT_EQ(file.parts[i].hatch_lines, 0U);
+            const Box3 box = part_box(held_parts[i].layers);
+            EXPECT_EQ(file.parts[i].box.empty(), box.empty());
             if (!box.empty()) {
-                EXPECT_EQ(file.stream->boxes[i].min, box.min);
-                EXPECT_EQ(file.stream->boxes[i].max, box.max);
+                EXPECT_EQ(file.parts[i].box.min, box.min);
+                EXPECT_EQ(file.parts[i].box.max, box.max);
             }
-            for (const Layer& layer : held.parts[i].layers)
+            for (const Layer& layer : held_parts[i].layers)
                 largest = std::max(largest, largest_coordinate(layer.points.span()));
         }
-        EXPECT_EQ(file.stream->largest_coordinate, largest);
-        EXPECT_EQ(file.stream->largest_hatch_coordinate, 0);
-        ASSERT_EQ(file.planes().size(), held.planes().size());
-        const std::vector<PlaneContent> contents[2] = {file.contents(), held.contents()};
-        ASSERT_EQ(contents[0].size(), contents[1].size());
-        for (std::size_t i = 0; i < file.planes().size(); ++i) {
-            EXPECT_EQ(contents[0][i].contours, contents[1][i].contours) << i;
-            EXPECT_EQ(contents[0][i].hatch_lines, 0U);
+        EXPECT_EQ(file.largest_coordinate, largest);
+        EXPECT_EQ(file.largest_hatch_coordinate, 0);
+        ASSERT_EQ(file.planes.size(), held.planes.size());
+        ASSERT_EQ(file.contents.size(), held.contents.size());
+        for (std::size_t i = 0; i < file.planes.size(); ++i) {
+            EXPECT_EQ(file.contents[i].points, held.contents[i].points) << i;
+            EXPECT_EQ(file.contents[i].hatch_lines, 0U);
             ASSERT_EQ(content_hash(file.plane(i)), content_hash(held.plane(i))) << i;
-            EXPECT_EQ(file.planes()[i].z, held.planes()[i].z);
-            EXPECT_EQ(file.planes()[i].bottom, held.planes()[i].bottom);
-            EXPECT_EQ(file.planes()[i].top, held.planes()[i].top);
+            EXPECT_EQ(file.planes[i].z, held.planes[i].z);
+            EXPECT_EQ(file.planes[i].bottom, held.planes[i].bottom);
+            EXPECT_EQ(file.planes[i].top, held.planes[i].top);
         }
     }
 }
@@ -298,7 +305,7 @@ TEST(ReadSlices3mf, LayersThatAreNotInMemoryAreTheSame) {
               "inch");
     expect_same_stream(root, model(stack(7, slices), ""));
     expect_same_stream(model(stack(1, "<t:slice ztop=\"1\"/>") + object(2, 1), "<item objectid=\"2\"/>"));
-    EXPECT_FALSE(read(root, model(stack(7, slices), ""), 2, {.layers = LayersKept::if_faster}).stream);
+    EXPECT_EQ(read(root, model(stack(7, slices), ""), 2, {.kept = KeptPlanes::if_faster}).plane_bytes, 0U);
 }
 
 TEST(ReadSlices3mf, APolygonBehindItsSliceIsInTheStreamToo) {
@@ -320,13 +327,12 @@ TEST(ReadSlices3mf, LayersThatAreNotInMemoryNeedNoMemory) {
                   "</t:vertices><t:polygon startv=\"0\">" + segments + "</t:polygon></t:slice>";
     const std::string root = model(stack(1, slices) + object(2, 1), "<item objectid=\"2\"/>");
     const std::uint64_t max_memory = root.size() * 5 / 4;
-    test::expect_error(ErrorKind::limit, {"max_memory"}, [&] {
-        static_cast<void>(read(root, "", 1, {.max_memory = max_memory}));
-    });
-    for (const LayersKept layers : {LayersKept::if_faster, LayersKept::none}) {
-        const LayerFile file = read(root, "", 2, {.max_memory = max_memory, .layers = layers});
-        ASSERT_TRUE(file.stream);
-        EXPECT_LT(file.stream->bytes, max_memory);
+    test::expect_error(ErrorKind::limit, {"max_memory"},
+                       [&] { static_cast<void>(read(root, "", 1, {.max_memory = max_memory})); });
+    for (const KeptPlanes kept : {KeptPlanes::if_faster, KeptPlanes::none}) {
+        const LayerFile file = read(root, "", 2, {.max_memory = max_memory, .kept = kept});
+        ASSERT_GT(file.plane_bytes, 0U);
+        EXPECT_LT(file.bytes, max_memory);
         EXPECT_EQ(file.plane(299).polylines.at(0).points.size(), 1000U);
     }
 }
@@ -341,7 +347,7 @@ TEST(ReadSlices3mf, PointsTooFarAwayAreFoundAlthoughLayersAreNotInMemory) {
         const std::string root = model(stack(1, slice("1")) + object(2, 1) + over(3) + over(4) + over(5),
                                        "<item objectid=\"5\"/>");
         const std::string of_stream = test::error_of(
-            ErrorKind::input, [&] { static_cast<void>(read(root, "", 2, {.layers = LayersKept::none})); });
+            ErrorKind::input, [&] { static_cast<void>(read(root, "", 2, {.kept = KeptPlanes::none})); });
         EXPECT_NE(of_stream.find("the build puts slices further away than 1e+100 mm"), std::string::npos)
             << of_stream;
     }
@@ -354,7 +360,8 @@ TEST(ReadSlices3mf, OpenPolygonsStayOpen) {
                             "</t:polygon></t:slice>") +
                        object(2, 1),
                    "<item objectid=\"2\"/>"));
-    EXPECT_EQ(file.parts[0].layers[0].open_chains(), 1U);
+    const std::vector<LayerPart> parts = file.in_memory();
+    EXPECT_EQ(parts[0].layers[0].open_chains(), 1U);
     EXPECT_EQ(file.warnings.size(), 1U);
 }
 
@@ -362,9 +369,10 @@ TEST(ReadSlices3mf, APolygonThatASliceBeginsInIsDropped) {
     std::string slices = slice("1");
     slices.insert(slices.rfind("</t:slice>"), "<t:polygon startv=\"0\"><t:slice ztop=\"2\"/></t:polygon>");
     const LayerFile file = read(model(stack(1, slices) + object(2, 1), "<item objectid=\"2\"/>"));
-    ASSERT_EQ(file.parts[0].layers.size(), 2U);
-    EXPECT_EQ(file.parts[0].layers[0].rings, 1U);
-    EXPECT_EQ(file.parts[0].layers[1].contours(), 0U);
+    const std::vector<LayerPart> parts = file.in_memory();
+    ASSERT_EQ(parts[0].layers.size(), 2U);
+    EXPECT_EQ(parts[0].layers[0].rings, 1U);
+    EXPECT_EQ(parts[0].layers[1].contours(), 0U);
 }
 
 TEST(ReadSlices3mf, WhatBreaksTheRulesIsRefused) {
@@ -432,10 +440,11 @@ TEST(ReadSlices3mf, TheConsortiumsSamplesAreRead) {
     if (!std::filesystem::exists(folder))
         GTEST_SKIP() << "no samples at " << folder;
     const LayerFile box = read_layers(folder + "box_sliced.3mf");
+    const std::vector<LayerPart> box_parts = box.in_memory();
     ASSERT_EQ(box.parts.size(), 1U);
-    EXPECT_GT(box.parts[0].layers.size(), 100U);
-    EXPECT_NEAR(measure(box.parts[0].layers[50]).area_mm2, 20.207 * 10.104, 0.5);
-    EXPECT_NEAR(box.parts[0].layers[0].bottom, 14.967, 1e-9);
+    EXPECT_GT(box_parts[0].layers.size(), 100U);
+    EXPECT_NEAR(measure(box_parts[0].layers[50]).area_mm2, 20.207 * 10.104, 0.5);
+    EXPECT_NEAR(box_parts[0].layers[0].bottom, 14.967, 1e-9);
     const LayerFile gears = read_layers(folder + "cube_gears_sliced.3mf");
     EXPECT_EQ(gears.parts.size(), 17U);
 }

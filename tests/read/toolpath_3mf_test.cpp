@@ -56,7 +56,7 @@ LayerFile read(const std::string& bytes) {
 }
 
 TEST(ReadToolpath3mf, EachLayerHasAPartOfItsOwnHoweverThatIsSpelt) {
-    EXPECT_EQ(read(job({"/L/a.xml", "/L/b.xml"})).parts.at(0).layers.size(), 2U);
+    EXPECT_EQ(read(job({"/L/a.xml", "/L/b.xml"})).in_memory().at(0).layers.size(), 2U);
     for (const std::string again : {"/L/a.xml", "/L/./a.xml", "../L/a.xml", "/L/%61.xml", "/l/A.xml"})
         try {
             static_cast<void>(read(job({"/L/a.xml", again})));

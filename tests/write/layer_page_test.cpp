@@ -38,12 +38,13 @@ struct WrittenPage {
     std::vector<std::string> warnings;
 };
 
-WrittenPage write_page(const LayerFile& file, const LayerFileInfo& info, const PageOptions& options,
-                       const PageNotes& notes = {}) {
+WrittenPage write_page(const std::vector<LayerPart>& parts, const LayerFileInfo& info,
+                       const PageOptions& options, const PageNotes& notes = {}) {
     const TemporaryFolder folder;
+    const PlaneSource source = source_of(parts);
     const auto writer = open_layer_page(folder.file("page.html"), info, options);
     for (std::size_t i = 0; i < info.layers; ++i)
-        writer->prepare(file.plane(i))();
+        writer->prepare(source.plane(i))();
     writer->add_notes(notes);
     writer->finish();
     const std::string html = file_bytes(folder.file("page.html"));
@@ -51,16 +52,16 @@ WrittenPage write_page(const LayerFile& file, const LayerFileInfo& info, const P
     return {html, read_page(html), writer->warnings()};
 }
 
-/// Returns a file of parts without hatch lines.
-LayerFile file_of(std::vector<LayerStack> parts) {
-    LayerFile file;
-    for (LayerStack& layers : parts)
-        file.parts.push_back({.label = {}, .layers = std::move(layers)});
-    return file;
+/// Returns parts without hatch lines.
+std::vector<LayerPart> parts_of(std::vector<LayerStack> stacks) {
+    std::vector<LayerPart> parts;
+    for (LayerStack& layers : stacks)
+        parts.push_back({.label = {}, .layers = std::move(layers)});
+    return parts;
 }
 
 WrittenPage write_page(const LayerStack& layers, const PageOptions& options = options_with()) {
-    return write_page(file_of({layers}), info_of(layers), options);
+    return write_page(parts_of({layers}), info_of(layers), options);
 }
 
 /// Members of a JSON object that are arrays of numbers; the others are passed over.
@@ -129,14 +130,13 @@ LayerStack fine_rings(std::size_t count) {
 }
 
 TEST(LayerPage, HoldsEveryContourWithinHalfAStep) {
-    std::vector<LayerStack> parts{random_layers(3, 20, 60, {500, -200}, true),
-                                  random_layers(3, 20, 60, {-40, 10}, true)};
-    LayerFileInfo info = info_of(parts[0]);
-    info.box.add(info_of(parts[1]).box);
-    info.parts = {{"one", {}}, {"two", {}}};
-    LayerFile file = file_of(parts);
-    file.parts[1].hatches.assign(20, PointArray({{1, 2}, {3.25, 4}, {-7, 8}, {9, 10}}));
-    const WrittenPage written = write_page(file, info, options_with());
+    std::vector<LayerPart> parts =
+        parts_of({random_layers(3, 20, 60, {500, -200}, true), random_layers(3, 20, 60, {-40, 10}, true)});
+    LayerFileInfo info = info_of(parts[0].layers);
+    info.box.add(info_of(parts[1].layers).box);
+    info.parts = {{.label = "one"}, {.label = "two"}};
+    parts[1].hatches.assign(20, PointArray({{1, 2}, {3.25, 4}, {-7, 8}, {9, 10}}));
+    const WrittenPage written = write_page(parts, info, options_with());
     EXPECT_TRUE(written.warnings.empty());
     const double step = member(written.page.json.at("head"), "step_mm");
     EXPECT_EQ(step, page_step_mm(info.box));
@@ -148,7 +148,7 @@ TEST(LayerPage, HoldsEveryContourWithinHalfAStep) {
     };
     for (std::size_t i = 0; i < read.size(); ++i)
         for (std::size_t p = 0; p < 2; ++p) {
-            const Layer& layer = parts[p][i];
+            const Layer& layer = parts[p].layers[i];
             const PagePart& part = read[i].parts[p];
             ASSERT_EQ(part.contours.size(), layer.contours());
             for (std::size_t c = 0; c < layer.contours(); ++c) {
@@ -158,7 +158,7 @@ TEST(LayerPage, HoldsEveryContourWithinHalfAStep) {
                 for (std::size_t k = 0; k < contour.size(); ++k)
                     expect_near(part.contours[c].points[k], contour[k]);
             }
-            const std::span<const Point2> hatches = file.parts[p].hatches_of(i);
+            const std::span<const Point2> hatches = parts[p].hatches_of(i);
             ASSERT_EQ(part.hatches.size(), hatches.size());
             for (std::size_t k = 0; k < hatches.size(); ++k)
                 expect_near(part.hatches[k], hatches[k]);
@@ -260,7 +260,7 @@ TEST(LayerPage, ReportsWhatStepsMadeOfTheLayers) {
     PageNotes notes;
     notes.changes = {{layers[2].index, once}, {layers[2].index, once}, {layers[0].index, once}};
     auto table = numbers_of(
-        write_page(file_of({layers}), info_of(layers), options_with(), notes).page.json.at("table"));
+        write_page(parts_of({layers}), info_of(layers), options_with(), notes).page.json.at("table"));
     EXPECT_EQ(table["rings_dropped"], (std::vector<double>{2, 0, 4, 0}));
     EXPECT_NEAR(table["area_before_mm2"][2], area + 40, 1e-9);
     EXPECT_EQ(table["area_before_mm2"][1], table["area_mm2"][1]);
@@ -297,7 +297,7 @@ TEST(LayerPage, FindsPartsThatRunThroughOneAnother) {
     parts.push_back({within.finish(0, 0.5, 0, 1)});
     LayerFileInfo info = info_of(parts[0]);
     info.parts.resize(parts.size());
-    auto table = numbers_of(write_page(file_of(parts), info, options_with()).page.json.at("table"));
+    auto table = numbers_of(write_page(parts_of(parts), info, options_with()).page.json.at("table"));
     EXPECT_EQ(table["crossings"][0], 2);
     EXPECT_GE(table["overlapping"][0], 1);
     EXPECT_EQ(table["area_mm2"][0], 201);
@@ -305,10 +305,8 @@ TEST(LayerPage, FindsPartsThatRunThroughOneAnother) {
 
 /// Two exposures: contours of two rings, one within the other and both counter-clockwise, each beginning
 /// elsewhere than in normal form, and a chain; and a hatch.
-LayerFile scanned(std::size_t count, int lines = 40) {
-    LayerFile file;
-    std::vector<LayerPart>& parts = file.parts;
-    parts.resize(2);
+std::vector<LayerPart> scanned(std::size_t count, int lines = 40) {
+    std::vector<LayerPart> parts(2);
     for (std::uint64_t i = 0; i < count; ++i) {
         const double bottom = 0.1 * static_cast<double>(i);
         LayerBuilder builder;
@@ -331,26 +329,26 @@ LayerFile scanned(std::size_t count, int lines = 40) {
         parts[1].layers.push_back({.index = i, .z = bottom + 0.05, .bottom = bottom, .top = bottom + 0.1});
         parts[1].hatches.emplace_back(std::move(hatches));
     }
-    return file;
+    return parts;
 }
 
-LayerFileInfo scanned_info(const LayerFile& file) {
-    LayerFileInfo info = info_of(file.parts[0].layers);
+LayerFileInfo scanned_info(const std::vector<LayerPart>& parts) {
+    LayerFileInfo info = info_of(parts[0].layers);
     const auto exposure = [](ScanRegion region, VectorKind kind, double power) {
         return Exposure{.part = "</script>a",
                         .region = region,
                         .kind = kind,
                         .parameters = {.name = "set", .power_w = power, .speed_mm_s = 500}};
     };
-    info.parts = {{"contours", {}, exposure(ScanRegion::core, VectorKind::contour, 120)},
-                  {"hatches", {}, exposure(ScanRegion::upskin, VectorKind::hatch, 200)}};
+    info.parts = {{.label = "contours", .exposure = exposure(ScanRegion::core, VectorKind::contour, 120)},
+                  {.label = "hatches", .exposure = exposure(ScanRegion::upskin, VectorKind::hatch, 200)}};
     return info;
 }
 
 TEST(LayerPage, HoldsScanVectorsAsTheyAreExecuted) {
-    const LayerFile file = scanned(3);
-    const LayerFileInfo info = scanned_info(file);
-    const WrittenPage written = write_page(file, info, options_with());
+    const std::vector<LayerPart> parts = scanned(3);
+    const LayerFileInfo info = scanned_info(parts);
+    const WrittenPage written = write_page(parts, info, options_with());
     EXPECT_TRUE(written.warnings.empty());
     EXPECT_NE(written.page.json.at("head").find(
                   R"("exposure":{"part":"\u003c/script>a","region":"core","kind":"contour","contour":0,)"
@@ -363,9 +361,8 @@ TEST(LayerPage, HoldsScanVectorsAsTheyAreExecuted) {
         ScanFigures expected;
         std::optional<Point2> beam;
         for (std::size_t part = 0; part < 2; ++part) {
-            const MeasuredVectors measured =
-                measure_vectors(file.parts[part].layers[i], file.parts[part].hatches_of(i),
-                                info.parts[part].exposure->parameters, beam);
+            const MeasuredVectors measured = measure_vectors(parts[part].layers[i], parts[part].hatches_of(i),
+                                                             info.parts[part].exposure->parameters, beam);
             beam = measured.beam;
             expected += measured.figures;
         }
@@ -389,23 +386,23 @@ TEST(LayerPage, HoldsScanVectorsAsTheyAreExecuted) {
 }
 
 TEST(LayerPage, KeepsEachLineOfScanVectorsEvenWherePointsFallTogether) {
-    LayerFile file = scanned(1);
+    std::vector<LayerPart> parts = scanned(1);
     LayerBuilder builder;
     add_contour(builder, {{1, 1}, {1.00001, 1}, {1, 1.00001}}, true);
-    file.parts[0].layers[0] = builder.finish_as_added(0, 0.05, 0, 0.1);
-    const WrittenPage written = write_page(file, scanned_info(file), options_with());
+    parts[0].layers[0] = builder.finish_as_added(0, 0.05, 0, 0.1);
+    const WrittenPage written = write_page(parts, scanned_info(parts), options_with());
     EXPECT_EQ(layers_of(written.page, 2)[0].parts[0].contours.at(0).points.size(), 3U);
 }
 
 TEST(LayerPage, ShowsAllVectorsOfSomeLayersWhereItsBudgetIsShort) {
-    const LayerFile file = scanned(40, 4000);
-    const LayerFileInfo info = scanned_info(file);
+    const std::vector<LayerPart> parts = scanned(40, 4000);
+    const LayerFileInfo info = scanned_info(parts);
     const std::size_t frame = write_page(LayerStack{}).html.size();
-    const std::uint64_t all = write_page(file, info, options_with()).html.size() - frame;
-    const WrittenPage written = write_page(file, info, options_with(all / 4));
+    const std::uint64_t all = write_page(parts, info, options_with()).html.size() - frame;
+    const WrittenPage written = write_page(parts, info, options_with(all / 4));
     ASSERT_EQ(written.warnings.size(), 1U);
     EXPECT_NE(written.warnings[0].find("layers are shown without their hatches"), std::string::npos);
-    EXPECT_LE(written.html.size(), frame + all / 4 + 500 * file.parts[0].layers.size());
+    EXPECT_LE(written.html.size(), frame + all / 4 + 500 * parts[0].layers.size());
     auto table = numbers_of(written.page.json.at("table"));
     std::vector<std::size_t> whole;
     for (std::size_t i = 0; i < 40; ++i) {
@@ -420,7 +417,7 @@ TEST(LayerPage, ShowsAllVectorsOfSomeLayersWhereItsBudgetIsShort) {
         EXPECT_LE(whole[i] - whole[i - 1], 12U);
 
     // Where not even contours fit, these lose points, but begin where they began.
-    const WrittenPage thin = write_page(file, info, options_with(40 * 400));
+    const WrittenPage thin = write_page(parts, info, options_with(40 * 400));
     const std::vector<PageLayer> read = layers_of(thin.page, 2);
     EXPECT_EQ(thin.warnings.size(), 2U);
     for (const PageLayer& layer : read) {
@@ -438,13 +435,13 @@ TEST(LayerPage, KeepsHostileTextInItsPlace) {
          {std::string("</script><script>alert(1)</script>"), std::string("<!--<script>"),
           std::string("\"}\\]"), std::string("\xff\xfe\n\0\x1b[31m", 9), std::string("\xe2\x80\xa8]]>-->")}) {
         LayerFileInfo info = info_of(layers);
-        info.parts = {{text, {}}};
+        info.parts = {{.label = text}};
         PageOptions options = options_with();
         options.title = text;
         PageNotes notes;
         notes.sections = {{text, {{text, text, Tone::bad}}}};
         notes.locations = {{text, text, {{1, 2, 3}}}};
-        const WrittenPage written = write_page(file_of({layers}), info, options, notes);
+        const WrittenPage written = write_page(parts_of({layers}), info, options, notes);
         EXPECT_EQ(written.page.scripts, scripts);
         EXPECT_EQ(written.page.data.size(), 2U);
         for (const auto& [id, json] : written.page.json) {

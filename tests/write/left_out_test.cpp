@@ -124,7 +124,7 @@ TEST(LayerWriter, LabelsNeverChangeWhatAPartIs) {
             << format;
         const LayerFile contours = read_layers(folder.file("contours"));
         ASSERT_EQ(contours.parts.size(), 3U) << format;
-        for (const LayerPart& part : contours.parts)
+        for (const PartInfo& part : contours.parts)
             EXPECT_FALSE(part.exposure) << format << ": " << part.label;
 
         // Vectors stay vectors, however long the name of their part is.

@@ -39,7 +39,7 @@ TEST(Toolpath3mf, IdentifiersAreHashesOfTheWholeHeader) {
     std::string header = "2 0 0 0 0 10 10 1";
     for (int i = 0; i < 300; ++i) {
         const std::string label = "part " + std::to_string(i);
-        info.parts.push_back({label, info.box});
+        info.parts.push_back({.label = label, .box = info.box});
         header += " \"" + label + "\" 0 0 0 10 10 1";
     }
     write_layers(folder.file("out"), layer_format("3mf-toolpath", ""),

@@ -22,9 +22,9 @@ struct FileFigures {
     std::vector<ExposureResult> exposures;
 };
 
-/// Measures all layers of a file, in parallel. The result is the same for any number of threads. Throws as
-/// `check(const LayerFile&)` does, and Error{cancelled}.
-[[nodiscard]] FileFigures measure(const LayerFile& file, const Execution& execution = {});
+/// Measures all layers of a file, in parallel. The result is the same for any number of threads. Throws the
+/// errors of PlaneSource::plane, and Error{cancelled}.
+[[nodiscard]] FileFigures measure(const PlaneSource& file, const Execution& execution = {});
 
 /// A slice file after layer steps.
 struct SteppedFile {
@@ -38,12 +38,12 @@ struct SteppedFile {
 };
 
 /// Applies the steps to the layers of a file, in parallel. Drops the hatch lines of a layer whose contours
-/// change. If the layers are not in memory, those of the result are not either: the steps are taken twice,
-/// now for what is known of the whole file, and then whenever a plane is needed, for which the cancel flag of
-/// `execution` must live as long as the stream. Without steps, the file is returned as it is and the counts
-/// are 0. `max_memory`: see layer_limits. Throws Error{usage} for parts that are scan vectors, because
-/// hatches and their contours are different parts, and only contours would change; the errors of the steps,
-/// which name the file and the part; and Error{cancelled}.
+/// change. The layers of the result stay in memory if they take at most half of what the limit leaves.
+/// Otherwise the steps are taken twice, now for what is known of the whole file, and then whenever a plane is
+/// needed, for which the cancel flag of `execution` must live as long as the file. Without steps, the file is
+/// returned as it is and the counts are 0. `max_memory`: see layer_limits. Throws Error{usage} for parts that
+/// are scan vectors, because hatches and their contours are different parts, and only contours would change;
+/// the errors of the steps, which name the file and the part; and Error{cancelled}.
 [[nodiscard]] SteppedFile take_steps(const LayerSteps& steps, LayerFile file, const Execution& execution = {},
                                      std::uint64_t max_memory = 0);
 

@@ -2,20 +2,17 @@
 
 // Findings in layers of a mesh or of a slice file: defects of contours, horizontal faces near planes.
 
-#include "lamella/contour/layer.hpp"
-#include "lamella/contour/rounding.hpp"
+#include "lamella/contour/plane_source.hpp"
 #include "lamella/core/execution.hpp"
 #include "lamella/core/layer_limits.hpp"
 #include "lamella/findings/findings.hpp"
 #include "lamella/mesh/mesh.hpp"
 #include "lamella/polygon/inverted_rings.hpp"
 #include "lamella/polygon/layer_steps.hpp"
-#include "lamella/read/layer_file.hpp"
 #include "lamella/slicing/plan.hpp"
 
 #include <cstddef>
 #include <cstdint>
-#include <span>
 #include <vector>
 
 LAMELLA_API_BEGIN
@@ -49,8 +46,8 @@ class LayerFindingSearch {
     /// Searches the layer of a part on the plane at this position. Several threads may call this at the same
     /// time, but only one of them for each plane. Throws the errors of inverted_rings.
     void look_at(std::size_t position, std::size_t part, const Layer& layer);
-    /// Searches, on one plane of a file, the parts that are not scan vectors.
-    void look_at(std::size_t position, const LayerFile& file, const ScanVectors& plane);
+    /// Searches, on one plane of a source, the parts that are not scan vectors.
+    void look_at(std::size_t position, const PlaneSource& source, const ScanVectors& plane);
     /// Returns the findings, as those of file 0; without labels of parts.
     [[nodiscard]] Findings findings() const { return log_.sums(planes_); }
 
@@ -63,14 +60,9 @@ class LayerFindingSearch {
     LayerLimits limits_;
 };
 
-/// Finds defects in the layers of parts on the same planes, as those of file 0. Parallel over planes.
-/// `max_memory`: see layer_limits.
-[[nodiscard]] Findings layer_findings(std::span<const LayerStack> parts, LayerUse use,
-                                      const Rounding& rounding, InversionSearch search,
-                                      const Execution& execution = {}, std::uint64_t max_memory = 0);
-
-/// Finds defects in the parts of a file that are not scan vectors. The layers need not be in memory.
-[[nodiscard]] Findings layer_findings(const LayerFile& file, LayerUse use, InversionSearch search,
+/// Finds defects in the parts of a source that are not scan vectors, as those of file 0. Parallel over
+/// planes. `max_memory`: see layer_limits.
+[[nodiscard]] Findings layer_findings(const PlaneSource& source, LayerUse use, InversionSearch search,
                                       const Execution& execution = {}, std::uint64_t max_memory = 0);
 
 } // namespace lamella

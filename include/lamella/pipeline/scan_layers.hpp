@@ -2,16 +2,13 @@
 
 // Scan vectors of existing layers, written to a file.
 
-#include "lamella/contour/layer.hpp"
-#include "lamella/contour/rounding.hpp"
+#include "lamella/contour/plane_source.hpp"
 #include "lamella/core/execution.hpp"
 #include "lamella/pipeline/file_result.hpp"
-#include "lamella/read/layer_file.hpp"
 #include "lamella/scan/strategy.hpp"
 #include "lamella/write/layer_writer.hpp"
 
 #include <cstdint>
-#include <span>
 #include <string>
 
 LAMELLA_API_BEGIN
@@ -21,26 +18,16 @@ namespace lamella {
 /// are the label of the part followed by the name of the exposure, such as "bracket core hatch".
 [[nodiscard]] LayerFileInfo with_exposures(const LayerFileInfo& info, const ScanStrategy& strategy);
 
-/// Computes the scan vectors of the layers of parts and writes them. The stacks of all parts must have the
-/// same planes. `rounding` is that of the file from which the layers were read; by default none. `info` is
-/// the header for a file of these layers. `name` is the name of their file in error messages; if it is empty,
-/// `path` is. `max_memory`: see layer_limits. Existing hatch lines of layers are ignored. Uses all threads,
-/// each of which holds the vectors of one plane in memory.
+/// Computes the scan vectors of the layers of all parts and writes them. Existing hatch lines are ignored.
+/// `max_memory`: see layer_limits. Uses all threads, each of which holds the vectors of one plane in memory.
 ///
 /// Returns the figures that `slice_file` returns with FileJob::scan and `layer_statistics`, without those of
-/// meshes. All `findings` are those of file 0. Throws the errors of `scan` and `write_layers`, and, with
-/// LayerWriteOptions::strict, Error{defect} for the first finding.
+/// meshes. All `findings` are those of file 0. Throws the errors of PlaneSource::plane, `scan` and
+/// `write_layers`, and, with LayerWriteOptions::strict, Error{defect} for the first finding.
 [[nodiscard]] FileResult scan_layers(const std::string& path, const LayerFormat& format,
-                                     std::span<const LayerStack> parts, const Rounding& rounding,
-                                     const LayerFileInfo& info, const ScanStrategy& strategy,
+                                     const PlaneSource& source, const ScanStrategy& strategy,
                                      const LayerWriteOptions& options = {}, const Execution& execution = {},
-                                     std::uint64_t max_memory = 0, const std::string& name = {});
-
-/// Does so for all layers of a file, which need not be in memory.
-[[nodiscard]] FileResult scan_layers(const std::string& path, const LayerFormat& format,
-                                     const LayerFile& file, const LayerFileInfo& info,
-                                     const ScanStrategy& strategy, const LayerWriteOptions& options = {},
-                                     const Execution& execution = {}, std::uint64_t max_memory = 0);
+                                     std::uint64_t max_memory = 0);
 
 } // namespace lamella
 LAMELLA_API_END

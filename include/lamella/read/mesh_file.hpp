@@ -25,7 +25,7 @@ namespace lamella {
 /// further ".gz".
 [[nodiscard]] bool is_mesh_name(const std::string& name);
 
-enum class LayersKept; // in layer_file.hpp
+enum class KeptPlanes : std::uint8_t; // in layer_file.hpp
 
 struct MeshReadOptions {
     /// Throws Error{defect} instead of a warning about wrong counts, truncation, or corners that are not
@@ -45,8 +45,8 @@ struct MeshReadOptions {
     std::uint64_t max_memory = 0;
     /// Bytes of `max_memory` that files read before still take.
     std::uint64_t held = 0;
-    /// For `read_any`: the layers of a slice file that stay in memory. By default LayersKept::all.
-    LayersKept layers = {};
+    /// For `read_any`: the planes of a slice file that stay in memory. By default KeptPlanes::all.
+    KeptPlanes kept = {};
 };
 
 /// A mesh of a file as stored: in the file's unit, without placement.

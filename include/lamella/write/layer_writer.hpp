@@ -2,10 +2,7 @@
 
 // Slice file writers: Common Layer Interface, SVG, images.
 
-#include "lamella/contour/exposure.hpp"
-#include "lamella/contour/layer.hpp"
-#include "lamella/contour/plane_rule.hpp"
-#include "lamella/contour/rounding.hpp"
+#include "lamella/contour/plane_source.hpp"
 #include "lamella/core/commit.hpp"
 #include "lamella/core/execution.hpp"
 #include "lamella/core/layer_limits.hpp"
@@ -24,15 +21,6 @@
 
 LAMELLA_API_BEGIN
 namespace lamella {
-
-/// Header data of a part of a slice file, or of one exposure of a part.
-struct PartInfo {
-    std::string label = "part";
-    Box3 box = {}; ///< mm; empty if unknown
-    /// If set, the part's layers are scan vectors; see `scan`.
-    std::optional<Exposure> exposure = {};
-    bool support = false; ///< true for a support, which has parameters of its own; 3MF files mark it
-};
 
 /// Returns the box of the contours and hatch lines of a part, from the bottom of its first layer to the top
 /// of its last. It is empty if there are none. O(points), parallel. Throws Error{cancelled}.
@@ -112,6 +100,11 @@ struct LayerFileInfo {
     /// every point.
     bool known_finite = false;
 };
+
+/// Returns the header of a file with the planes of this source. Parts without a label get the default of
+/// PartInfo. The box extends from the bottom of the first plane to the top of the last. Throws Error{input}
+/// if there are no planes.
+[[nodiscard]] LayerFileInfo info_of(const PlaneSource& source);
 
 /// Options of the format html: see lamella/write/layer_page.hpp.
 struct PageOptions {

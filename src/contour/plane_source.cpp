@@ -1,0 +1,218 @@
+#include "lamella/contour/plane_source.hpp"
+
+#include "lamella/core/error.hpp"
+#include "lamella/core/printable.hpp"
+
+#include "contour/plane_sums.hpp"
+#include "contour/same_height.hpp"
+#include "core/executor.hpp"
+#include "core/ordered_stage.hpp"
+#include "core/progress.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <utility>
+
+namespace lamella {
+
+ScanVectors PlaneSource::plane(std::size_t position) const {
+    ScanVectors vectors = make(position);
+    const Layer& heights = planes[position];
+    for (Layer& layer : vectors.polylines) {
+        layer.index = heights.index;
+        layer.z = heights.z;
+        layer.bottom = heights.bottom;
+        layer.top = heights.top;
+    }
+    return vectors;
+}
+
+std::uint64_t PlaneSource::hatch_lines() const noexcept {
+    std::uint64_t lines = 0;
+    for (const PartInfo& part : parts)
+        lines += part.hatch_lines;
+    return lines;
+}
+
+void PlaneSource::run(Stage stage, const PlaneSink& sink, const Execution& execution) const {
+    Executor executor(for_planes(execution));
+    ProgressMeter progress(execution, stage, planes.size());
+    run_in_order(executor, progress, planes.size(), [&](std::uint64_t i) { return sink(i, plane(i)); });
+    progress.finish();
+}
+
+void PlaneSource::visit(Stage stage, const PlaneVisitor& visit, const Execution& execution) const {
+    Executor executor(for_planes(execution));
+    ProgressMeter progress(execution, stage, planes.size());
+    executor.for_chunks(planes.size(), 1, [&](std::uint64_t i, std::uint64_t, unsigned worker) {
+        visit(i, plane(i), worker);
+        progress.add(1);
+    });
+    executor.check_cancelled();
+    progress.finish();
+}
+
+std::vector<LayerPart> PlaneSource::in_memory(const Execution& execution) const {
+    std::vector<LayerPart> result;
+    for (const PartInfo& part : parts) {
+        result.push_back({.label = part.label,
+                          .layers = LayerStack(planes.size()),
+                          .exposure = part.exposure,
+                          .support = part.support});
+        if (part.hatch_lines > 0)
+            result.back().hatches.resize(planes.size());
+    }
+    visit(
+        Stage::read,
+        [&](std::size_t i, ScanVectors plane, unsigned) {
+            for (std::size_t part = 0; part < result.size(); ++part) {
+                result[part].layers[i] = std::move(plane.polylines[part]);
+                if (!result[part].hatches.empty())
+                    result[part].hatches[i] = std::move(plane.hatches[part]);
+            }
+        },
+        without_progress(execution));
+    return result;
+}
+
+LayerStack PlaneSource::merged(const Execution& execution) const {
+    LayerStack all(planes.size());
+    visit(
+        Stage::read,
+        [&](std::size_t i, ScanVectors plane, unsigned) {
+            all[i] = plane.exposures() == 1 ? std::move(plane.polylines.front())
+                                            : lamella::merged(plane.polylines);
+        },
+        without_progress(execution));
+    return all;
+}
+
+Execution PlaneSource::for_planes(const Execution& execution) const {
+    Execution fewer = execution;
+    if (plane_bytes > 0)
+        fewer.threads = static_cast<unsigned>(
+            std::clamp<std::uint64_t>(spare_bytes / plane_bytes, 1, thread_count(execution)));
+    return fewer;
+}
+
+namespace {
+
+std::uint64_t memory_of(const ScanVectors& plane) {
+    constexpr std::uint64_t of_empty = sizeof(Layer) + sizeof(PointArray) + 2 * 64; // two more allocations
+    std::uint64_t bytes = 0;
+    for (std::size_t part = 0; part < plane.exposures(); ++part)
+        bytes += of_empty + plane.polylines[part].offsets.size() * sizeof(std::uint64_t) +
+                 (plane.polylines[part].points.size() + plane.hatches[part].size()) * sizeof(Point2);
+    return bytes;
+}
+
+/// Throws Error{usage} unless the layers of the part, and its hatch lines, are on these planes, which are
+/// those of the first part.
+void check_planes(const LayerPart& part, bool first, const LayerStack& planes, const std::string& path) {
+    const auto refuse = [&](const std::string& found) {
+        throw Error(ErrorKind::usage, fmt::format("{}{}the part \"{}\" {}", path, path.empty() ? "" : ": ",
+                                                  excerpt(part.label), found));
+    };
+    const auto same = [](double a, double b) {
+        return std::abs(a - b) <= same_height_mm;
+    };
+    if (part.layers.size() != planes.size())
+        refuse(fmt::format(
+            "has {} layers and the first one has {}; parts can be put together where all have the "
+            "same planes",
+            part.layers.size(), planes.size()));
+    if (!part.hatches.empty() && part.hatches.size() != planes.size())
+        refuse(fmt::format("has {} layers and hatch lines of {}", planes.size(), part.hatches.size()));
+    for (std::size_t i = 0; i < planes.size() && !first; ++i) {
+        const Layer& a = planes[i];
+        const Layer& b = part.layers[i];
+        if (a.index != b.index || !same(a.z, b.z) || !same(a.bottom, b.bottom) || !same(a.top, b.top))
+            refuse(fmt::format(
+                "has other planes than the first one: layer {} at z = {} mm (from {} to {}), and not "
+                "layer {} at {} (from {} to {})",
+                b.index, b.z, b.bottom, b.top, a.index, a.z, a.bottom, a.top));
+    }
+}
+
+} // namespace
+
+PlaneSource source_of(std::vector<LayerPart> parts, std::string path, const Execution& execution) {
+    PlaneSource source;
+    source.path = std::move(path);
+    if (!parts.empty())
+        for (const Layer& layer : parts.front().layers)
+            source.planes.push_back(
+                {.index = layer.index, .z = layer.z, .bottom = layer.bottom, .top = layer.top});
+    const std::size_t planes = source.planes.size();
+    for (const LayerPart& part : parts) {
+        check_planes(part, &part == parts.data(), source.planes, source.path);
+        source.parts.push_back(
+            {.label = part.label, .box = {}, .exposure = part.exposure, .support = part.support});
+    }
+    source.contents.resize(planes);
+    std::vector<ScanVectors> kept(planes);
+    Executor executor(execution);
+    std::vector<PlaneSums> sums(executor.workers(), PlaneSums(source.parts.size()));
+    std::vector<char> unsound(planes);
+    executor.for_chunks(planes, 1, [&](std::uint64_t i, std::uint64_t, unsigned worker) {
+        for (LayerPart& part : parts)
+            kept[i].add(std::move(part.layers[i]), part.hatches.empty() ? PointArray() : part.hatches[i]);
+        try {
+            check(kept[i]);
+        } catch (const Error&) {
+            unsound[i] = 1;
+            return;
+        }
+        source.contents[i] = sums[worker].add(kept[i]);
+    });
+    executor.check_cancelled();
+    for (std::size_t i = 0; i < planes; ++i)
+        if (unsound[i] != 0)
+            check(kept[i]); // throws the error of the lowest one
+    for (std::size_t worker = 1; worker < sums.size(); ++worker)
+        sums.front().add(sums[worker]);
+    sums.front().put(source);
+    keep_planes(source, std::move(kept));
+    return source;
+}
+
+PlaneSource source_of(std::vector<LayerStack> parts, const Rounding& rounding, const Execution& execution) {
+    std::vector<LayerPart> all;
+    for (LayerStack& layers : parts)
+        all.push_back({.layers = std::move(layers)});
+    PlaneSource source = source_of(std::move(all), {}, execution);
+    source.rounding = rounding;
+    return source;
+}
+
+void keep_planes(PlaneSource& source, std::vector<ScanVectors> planes) {
+    source.bytes = 0;
+    for (const ScanVectors& plane : planes)
+        source.bytes += memory_of(plane);
+    source.plane_bytes = 0;
+    source.spare_bytes = std::numeric_limits<std::uint64_t>::max();
+    source.make =
+        [planes = std::make_shared<const std::vector<ScanVectors>>(std::move(planes))](std::size_t position) {
+            return (*planes)[position];
+        };
+}
+
+PlaneSource with_parts(const PlaneSource& source, std::vector<std::size_t> parts) {
+    PlaneSource some = source;
+    some.parts.clear();
+    for (const std::size_t part : parts)
+        some.parts.push_back(source.parts[part]);
+    some.make = [make = source.make, parts = std::move(parts)](std::size_t position) {
+        ScanVectors all = make(position);
+        ScanVectors vectors;
+        for (const std::size_t part : parts)
+            vectors.add(std::move(all.polylines[part]), std::move(all.hatches[part]));
+        return vectors;
+    };
+    return some;
+}
+
+} // namespace lamella
