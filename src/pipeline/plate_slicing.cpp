@@ -1,6 +1,7 @@
 #include "pipeline/plate_slicing.hpp"
 
 #include "lamella/polygon/fill.hpp"
+#include "lamella/slicing/slicer.hpp"
 
 #include "contour/box2.hpp"
 #include "core/executor.hpp"
@@ -10,6 +11,7 @@
 #include "polygon/subtract.hpp"
 #include "slicing/layer_counter.hpp"
 #include "slicing/plane_ranges.hpp"
+#include "slicing/planned_source.hpp"
 #include "slicing/shrunken_contours.hpp"
 
 #include <algorithm>
@@ -370,6 +372,29 @@ SliceReport slice_to(const LayerSink& sink, const Plate& plate, const Plan& plan
     SliceReport report = slice_to(of_plate, plate, plan, options);
     counter.set_counts(report);
     return report;
+}
+
+PlaneSource planes_of(const Plate& plate, const Plan& plan, const Execution& execution) {
+    PlaneSource source = planned_source(plan);
+    std::vector<PlaneSource> shapes;
+    for (const PlateShape& shape : plate.shapes)
+        shapes.push_back(Slicer(shape.mesh, plan.rule, execution).slice(plan));
+    for (const PlatePart& part : plate.parts)
+        source.parts.push_back({.label = part.label, .box = part.box, .support = part.support});
+    source.make = [shapes = std::move(shapes), parts = plate.parts,
+                   negatives = plate.negatives](std::size_t position) {
+        std::vector<Layer> bodies;
+        const auto add = [&](const auto& body) {
+            bodies.push_back(moved(shapes[body.shape].plane(position).polylines.front(), body.dx, body.dy));
+        };
+        std::for_each(parts.begin(), parts.end(), add);
+        std::for_each(negatives.begin(), negatives.end(), add);
+        ScanVectors plane;
+        plane.polylines = material_of(bodies, negatives).parts;
+        plane.hatches.resize(plane.polylines.size());
+        return plane;
+    };
+    return source;
 }
 
 LayerStack slice(const Plate& plate, const Plan& plan, const SliceOptions& options) {

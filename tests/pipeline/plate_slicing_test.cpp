@@ -95,6 +95,29 @@ TEST(PlateSlicing, GivesEachPlaneOnceInOrderWithTheLayersOfItsPartsHoweverFewPoi
     }
 }
 
+TEST(PlateSlicing, MakesASourceOfTheSamePlanes) {
+    Plate plate = plate_of({{make_torus(6, 2, 48, 24), 3}, {make_sphere(3, 3), 2}});
+    const Plan plan = plan_of(plate, 0.3);
+    const auto expect_same = [&] {
+        const PlaneSource source = planes_of(plate, plan);
+        const PlateSink compare{.prepare = [&](std::span<const Layer> bodies) {
+            const std::vector<Layer> expected = material_of(bodies, plate.negatives).parts;
+            const std::vector<Layer> found = source.plane(bodies.front().index).polylines;
+            EXPECT_EQ(found.size(), expected.size());
+            for (std::size_t part = 0; part < expected.size(); ++part)
+                EXPECT_TRUE(same_contours(found.at(part), expected[part])) << part;
+            return Commit();
+        }};
+        static_cast<void>(slice_to(compare, plate, plan, {.execution = {.threads = 1}}));
+        ASSERT_EQ(source.parts.size(), plate.parts.size());
+        EXPECT_EQ(source.parts.back().box, plate.parts.back().box);
+    };
+    expect_same();
+    plate.negatives.push_back(
+        {.shape = 1, .dx = plate.parts[0].dx, .box = plate.parts.back().box, .parts = {0}});
+    expect_same();
+}
+
 TEST(PlateSlicing, SlicesAShapeOnlyWhereItStands) {
     // Boxes on top of each other, and one beside them that reaches over all; planes on their faces, too.
     std::vector<PlateInput> inputs(4);

@@ -2,7 +2,7 @@
 
 // The build plate: mesh files and the positions of their parts.
 
-#include "lamella/contour/layer.hpp"
+#include "lamella/contour/plane_source.hpp"
 #include "lamella/core/commit.hpp"
 #include "lamella/core/execution.hpp"
 #include "lamella/core/layer_limits.hpp"
@@ -123,6 +123,11 @@ void check_memory(const Plate& plate, std::uint64_t bytes_per_triangle, std::uin
 [[nodiscard]] LayerStack slice(const Plate& plate, const Plan& plan, const SliceOptions& options = {});
 SliceReport slice_to(const LayerSink& sink, const Plate& plate, const Plan& plan,
                      const SliceOptions& options = {});
+
+/// Prepares the plate for single planes, like Slicer, and returns the layers of a plan as a source with the
+/// parts of the plate, without negative volumes. The source cuts each plane when it is needed; its contents
+/// are unknown. Throws the errors of `Slicer` and Slicer::slice. The plate is not needed afterwards.
+[[nodiscard]] PlaneSource planes_of(const Plate& plate, const Plan& plan, const Execution& execution = {});
 
 /// Like LayerSink, but for all layers of one plane: one for each of Plate::parts, then one for each of
 /// Plate::negatives.

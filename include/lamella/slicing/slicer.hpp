@@ -4,10 +4,12 @@
 
 #include "lamella/contour/layer.hpp"
 #include "lamella/contour/plane_rule.hpp"
+#include "lamella/contour/plane_source.hpp"
 #include "lamella/core/execution.hpp"
 #include "lamella/core/point.hpp"
 #include "lamella/mesh/mesh.hpp"
 #include "lamella/mesh/transform.hpp"
+#include "lamella/slicing/plan.hpp"
 
 #include <memory>
 
@@ -52,6 +54,11 @@ class Slicer {
     /// thread.
     [[nodiscard]] Layer section(double z) const;
 
+    /// Returns the layers of a plan as a source, which cuts each plane when it is needed, and shares the
+    /// prepared mesh. Its contents are unknown. Throws the error of `check` for a plan, and Error{usage} for
+    /// another rule than that of the slicer, or a snap distance. O(layers).
+    [[nodiscard]] PlaneSource slice(const Plan& plan) const;
+
     /// Returns the section with the plane through `origin` perpendicular to `normal`, which has any length.
     /// The rule of the plane applies with "above" on the side that the normal points to: the side of each
     /// vertex v is decided exactly, by the sign of (v - origin) . normal for the given numbers, before
@@ -67,7 +74,7 @@ class Slicer {
 
   private:
     struct Prepared;
-    std::unique_ptr<const Prepared> prepared_;
+    std::shared_ptr<const Prepared> prepared_;
 };
 
 } // namespace lamella

@@ -8,6 +8,7 @@
 #include "core/bit_cast.hpp"
 #include "core/executor.hpp"
 #include "mesh/box_tree.hpp"
+#include "slicing/planned_source.hpp"
 #include "slicing/ranks.hpp"
 #include "slicing/sweep/columns.hpp"
 #include "slicing/sweep/cut_graph.hpp"
@@ -17,6 +18,8 @@
 #include "slicing/sweep/visit_marks.hpp"
 #include "slicing/sweep/walk.hpp"
 #include "slicing/tilted_plane.hpp"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cassert>
@@ -258,7 +261,7 @@ struct Slicer::Prepared {
 };
 
 Slicer::Slicer(Mesh mesh, PlaneRule rule, const Execution& execution)
-    : prepared_(std::make_unique<const Prepared>(std::move(mesh), rule, execution)) {}
+    : prepared_(std::make_shared<const Prepared>(std::move(mesh), rule, execution)) {}
 Slicer::~Slicer() = default;
 Slicer::Slicer(Slicer&&) noexcept = default;
 Slicer& Slicer::operator=(Slicer&&) noexcept = default;
@@ -273,6 +276,23 @@ Layer Slicer::section(double z) const {
     return prepared_->level->section(z + 0.0);
 }
 
+PlaneSource Slicer::slice(const Plan& plan) const {
+    check(plan);
+    if (plan.rule != prepared_->rule || plan.snap_mm != 0)
+        throw Error(ErrorKind::usage,
+                    fmt::format("found a plan of the rule {} and a snap distance of {} mm; this "
+                                "slicer has the rule {} and snaps nothing",
+                                plane_rule_name(plan.rule), plan.snap_mm, plane_rule_name(prepared_->rule)));
+    PlaneSource source = planned_source(plan);
+    source.parts = {{.label = {}, .box = bounding_box(prepared_->mesh, {.threads = 1})}};
+    source.make = [prepared = prepared_, planes = source.planes](std::size_t position) {
+        ScanVectors plane;
+        plane.add(prepared->level->section(planes[position].z + 0.0), {});
+        return plane;
+    };
+    return source;
+}
+
 PlaneSection Slicer::section(const Point3& origin, const Point3& normal, const CancelFlag* cancel) const {
     const TiltedPlane plane(origin, normal);
     PlaneSection section{.layer = {}, .to_mesh = plane.from_frame()};
@@ -283,9 +303,10 @@ PlaneSection Slicer::section(const Point3& origin, const Point3& normal, const C
         return section;
     std::sort(near.begin(), near.end());
     constexpr double at = 0;
-    section.layer = std::move(slice(in_frame(plane, prepared_->mesh, near),
-                                    plan_of({&at, 1}, prepared_->rule), {.execution = {.threads = 1}})
-                                  .front());
+    section.layer =
+        std::move(lamella::slice(in_frame(plane, prepared_->mesh, near), plan_of({&at, 1}, prepared_->rule),
+                                 {.execution = {.threads = 1}})
+                      .front());
     return section;
 }
 

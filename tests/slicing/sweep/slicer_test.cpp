@@ -298,6 +298,34 @@ TEST(Slicer, ServesManyThreadsAtOnce) {
     EXPECT_EQ(wrong, std::vector<int>(wrong.size()));
 }
 
+TEST(Slicer, IsASourceOfTheLayersOfAPlan) {
+    for (const PlaneRule rule : {PlaneRule::section_above, PlaneRule::section_below}) {
+        Plan plan = plan_uniform(-8.1, 8.1, {.layer_height = 0.3});
+        plan.rule = rule;
+        const Mesh mesh(make_torus(6, 2, 48, 24));
+        PlaneSource source = Slicer(mesh, rule).slice(plan); // outlives the slicer
+        const LayerStack expected = slice(mesh, plan);
+        const LayerStack found = source.merged({.threads = 3});
+        ASSERT_EQ(found.size(), expected.size());
+        for (std::size_t i = 0; i < found.size(); ++i) {
+            EXPECT_TRUE(same_contours(found[i], expected[i])) << i;
+            EXPECT_EQ(found[i].index, expected[i].index);
+            EXPECT_EQ(found[i].bottom, expected[i].bottom);
+            EXPECT_EQ(found[i].top, expected[i].top);
+        }
+        EXPECT_EQ(source.rule, rule);
+        EXPECT_EQ(source.parts.at(0).box, bounding_box(mesh));
+    }
+    const Slicer slicer(Mesh(make_box(1, 1, 1)));
+    Plan plan = plan_uniform(0, 1, {.layer_height = 0.25});
+    plan.rule = PlaneRule::section_below;
+    expect_error(ErrorKind::usage, {"section_below", "section_above"},
+                 [&] { static_cast<void>(slicer.slice(plan)); });
+    plan.rule = PlaneRule::section_above;
+    plan.snap_mm = 0.01;
+    expect_error(ErrorKind::usage, {"snap distance of 0.01"}, [&] { static_cast<void>(slicer.slice(plan)); });
+}
+
 TEST(Slicer, NamesWhatIsNoPlane) {
     const Slicer slicer(Mesh(make_box(1, 1, 1)));
     const double none = std::numeric_limits<double>::quiet_NaN();
