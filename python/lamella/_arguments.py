@@ -16,8 +16,12 @@ import math
 import numbers
 import operator
 import os
+import re
 import reprlib
-from typing import Any, Callable, Iterable, Literal, NoReturn, Optional, Protocol, Sequence, Tuple, TypeVar, Union
+from typing import (
+    Annotated, Any, Callable, Dict, Iterable, Literal, Match, NoReturn, Optional, Protocol, Sequence, Tuple, TypeVar, Union,
+    get_args, get_origin,
+)  # fmt: skip
 
 import numpy as np
 import numpy.typing as npt
@@ -44,7 +48,6 @@ Readable = Union[PathLike, bytes, bytearray, memoryview, BinaryReader]
 Writable = Union[PathLike, BinaryWriter]
 # For the extension: the bytes of a path, or the name of an object in errors and its content.
 Source = Union[bytes, Tuple[bytes, Union[bytes, bytearray, memoryview]]]
-Progress = Callable[[str, int, int], object]
 CutAt = Literal["bottom", "middle", "top"]
 FillRule = Literal["nonzero", "evenodd", "positive"]
 Corners = Literal["mitre", "bevel", "round"]
@@ -52,11 +55,12 @@ Orientation = Literal["landscape", "portrait"]
 Mirror = Literal["none", "x", "y", "xy"]
 Vector = Union[Sequence[float], npt.NDArray[Any]]  # x, y and z
 Rule = Literal["section_above", "section_below"]
+Check = Callable[[str, Any], Any]  # takes the name of an argument and its value
 T = TypeVar("T")
+Class = TypeVar("Class", bound=type)
 Function = TypeVar("Function", bound=Callable[..., Any])
 
-FILL_RULES = ("nonzero", "evenodd", "positive")
-MOST_THREADS = 4096
+MOST_PIXELS = 65535  # of an image, each way
 SIMILAR = 0.65  # least similarity of words, by difflib; that of "side" and "middle" is 0.6
 MOST_QUOTED = 200  # characters of a value; the library quotes as many bytes
 
@@ -164,26 +168,88 @@ def nearest(word: object, known: Iterable[str]) -> str:
     return next(iter(difflib.get_close_matches(excerpt(word).lower(), list(known), 1, SIMILAR)), "")
 
 
-def suggesting(function: Function) -> Function:
-    """Adds to the error for an unknown keyword the one that is probably meant, and to an error of the system the name of
-    the file."""
-    known = list(inspect.signature(function).parameters)
+def arguments(function: Function) -> Function:
+    """Checks the arguments of a function, which gets them as the checks return them. The types of its parameters say what
+    they may be: `bool`, `int`, `float`, `str`, a Literal, Annotated with a check, and an Optional of these. Others are not
+    checked here. To the error for an unknown keyword it adds the one that is probably meant, and to an error of the system
+    the name of the file."""
+    parameters = inspect.signature(function).parameters
+    names = getattr(function, "__globals__")
+    checks = [(name, _check_of(_type_of(parameter.annotation, names))) for name, parameter in parameters.items()]
+    by_name = {name: of_value for name, of_value in checks if of_value is not None}
+    defaults = [
+        (position, name, by_name[name](name, parameters[name].default))
+        for position, name in enumerate(parameters)
+        if name in by_name and parameters[name].default is not inspect.Parameter.empty
+    ]
+    changed = [(position, name, value) for position, name, value in defaults if value != parameters[name].default]
+
+    most_given = sum(parameter.kind != parameter.KEYWORD_ONLY for parameter in parameters.values())
 
     @functools.wraps(function)
-    def call(*arguments: Any, **keywords: Any) -> Any:
+    def call(*given: Any, **keywords: Any) -> Any:
         for word in keywords:
-            if word not in known and (hint := nearest(word, known)):
+            if word not in parameters and (hint := nearest(word, parameters)):
                 raise TypeError(
                     f"{function.__qualname__}() got an unexpected keyword argument {word!r}; did you mean {hint!r}?"
                 )
+        if len(given) > most_given or not parameters.keys() >= keywords.keys():
+            return function(*given, **keywords)  # raises Python's error
+        checked = [of_value(name, value) if of_value else value for (name, of_value), value in zip(checks, given)]
+        named = {name: by_name[name](name, value) if name in by_name else value for name, value in keywords.items()}
+        for position, name, value in changed:
+            if len(given) <= position and name not in keywords:
+                named[name] = value
         try:
-            return function(*arguments, **keywords)
+            return function(*checked, **named)
         except OSError as error:
             if isinstance(error, Error):
-                name_the_file(error, (*arguments, *keywords.values()))
+                name_the_file(error, (*given, *keywords.values()))
             raise
 
+    plain = [parameter.replace(annotation=_plain(parameter.annotation, names)) for parameter in parameters.values()]
+    setattr(call, "__signature__", inspect.signature(function).replace(parameters=plain))
     return call  # type: ignore[return-value]
+
+
+def construction(cls: Class) -> Class:
+    """Checks the arguments of the constructor of a class."""
+    setattr(cls, "__init__", arguments(getattr(cls, "__init__")))
+    return cls
+
+
+def _type_of(annotation: Any, names: Dict[str, Any]) -> Any:
+    try:
+        return eval(annotation, names) if isinstance(annotation, str) else annotation
+    except NameError:  # a name that is there for type checkers only
+        return Any
+
+
+def _check_of(kind: Any) -> Optional[Check]:
+    """Returns the check of a value of this type."""
+    origin, inner = get_origin(kind), get_args(kind)
+    if origin is Annotated:
+        return inner[1]  # type: ignore[no-any-return]
+    if origin is Literal:
+        return lambda name, value: choice(name, value, inner)
+    if origin is Union and inner[1:] == (type(None),):
+        each = _check_of(inner[0])
+        return None if each is None else functools.partial(optional, each)
+    checks: Dict[Any, Check] = {bool: flag, int: whole, float: number, str: text}
+    return checks.get(kind)
+
+
+def _plain(annotation: Any, names: Dict[str, Any]) -> Any:
+    """Returns the text of a type without its checks, as users see it."""
+
+    def plain(found: Match[str]) -> str:
+        kind = names.get(found.group())
+        if get_origin(kind) is not Annotated:
+            return found.group()
+        text = repr(get_args(kind)[0]).replace("typing.", "").replace("<class '", "").replace("'>", "")
+        return text if len(text) < 40 else found.group()
+
+    return re.sub(r"\w+", plain, annotation) if isinstance(annotation, str) else annotation
 
 
 def _listed(choices: Sequence[str], last: str) -> str:
@@ -314,6 +380,10 @@ def pair(name: str, value: Any, expected: str, each: Callable[[str, Any], T]) ->
     return first, second
 
 
+def coordinates(name: str, value: Any) -> Tuple[float, ...]:
+    return several(name, value, 3, "three numbers (x, y, z)", number)
+
+
 def lengths(name: str, value: Any) -> Tuple[float, float]:
     """Returns two lengths, along x and y. One length counts for both."""
     if isinstance(value, (numbers.Real, decimal.Decimal)) or is_array_of_one(value):
@@ -359,14 +429,14 @@ def finite(name: str, numbers: npt.NDArray[np.float64]) -> npt.NDArray[np.float6
     return numbers
 
 
-def thread_count(threads: Any) -> int:
-    return whole("threads", threads, most=MOST_THREADS)
+def matrix(name: str, value: Any) -> npt.NDArray[np.float64]:
+    return finite(name, shaped(name, value, (4, 4), "a matrix of the shape (4, 4)"))
 
 
-def listener(progress: Any) -> Optional[Progress]:
-    if progress is not None and not callable(progress):
-        refuse_type("progress", "a function of (stage, done, total)", progress)
-    return progress  # type: ignore[no-any-return]
+def listener(name: str, value: Any) -> Any:
+    if not callable(value):
+        refuse_type(name, "a function of (stage, done, total)", value)
+    return value
 
 
 def words(name: str, value: Any) -> str:
@@ -382,25 +452,13 @@ def words(name: str, value: Any) -> str:
     return ",".join(text(name, word) for word in several)
 
 
-def reading(
-    name: str,
-    file: Any,
-    unit_mm: Any,
-    strict: Any,
-    include: Any,
-    max_triangles: Any,
-    max_memory: Any,
-    threads: Any,
-    progress: Any,
-) -> Tuple[Source, Optional[float], bool, str, int, int, int, Optional[Progress]]:
-    """Checks the arguments for reading a file that may contain a mesh. A file object is read if they are right."""
-    rest = (
-        optional(positive, "unit_mm", unit_mm),
-        flag("strict", strict),
-        words("include", include),
-        whole("max_triangles", max_triangles),
-        whole("max_memory", max_memory),
-        thread_count(threads),
-        listener(progress),
-    )
-    return (source(name, file), *rest)
+# Types of arguments, each with its check.
+Positive = Annotated[float, positive]
+Distance = Annotated[float, distance]
+Threads = Annotated[int, functools.partial(whole, most=4096)]
+Antialias = Annotated[int, functools.partial(whole, least=1, most=64)]
+Progress = Annotated[Callable[[str, int, int], object], listener]
+Words = Annotated[Union[str, Iterable[str]], words]
+Lengths = Annotated[Union[float, Tuple[float, float]], lengths]
+Coordinates = Annotated[Vector, coordinates]
+Matrix = Annotated[npt.ArrayLike, matrix]

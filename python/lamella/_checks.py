@@ -5,20 +5,17 @@ from __future__ import annotations
 import math
 import os
 from dataclasses import dataclass
-from typing import List, Optional, Tuple, Union
-
-import numpy.typing as npt
+from typing import Any, Dict, List, Optional, Tuple, Union
 
 from . import _arguments as check
 from . import _lamella
-from ._arguments import FILL_RULES, CutAt, FillRule, Progress, Readable, Vector
+from ._arguments import Coordinates, CutAt, Distance, FillRule, Matrix, Positive, Progress, Readable, Threads
 from ._errors import UsageError
 from ._files import as_stack
 from ._lamella import Layer, Stack
-from ._meshes import UPWARDS, Mending, mending, placing
+from ._meshes import UPWARDS
 from ._plates import Sliceable, plate_of
 from ._strategies import StrategyLike, as_strategy
-from ._slicing import PLACES
 from ._warning import warn
 
 
@@ -46,23 +43,23 @@ class Verification:
         return self.ok
 
 
-@check.suggesting
+@check.arguments
 def verify(
     layers: Union[Readable, Stack],
     mesh: Optional[Sliceable] = None,
     *,
     at: Optional[CutAt] = None,
-    snap: float = 0,
-    tolerance: float = 0,
+    snap: Distance = 0,
+    tolerance: Distance = 0,
     fill: Optional[FillRule] = None,
-    direction: Vector = (0, 0, 1),
-    transform: Optional[npt.ArrayLike] = None,
-    unit_mm: Optional[float] = None,
-    weld_tolerance: Optional[float] = None,
+    direction: Coordinates = (0, 0, 1),
+    transform: Optional[Matrix] = None,
+    unit_mm: Optional[Positive] = None,
+    weld_tolerance: Optional[Positive] = None,
     drop_duplicates: bool = False,
     orient: bool = False,
-    close_gaps: Optional[float] = None,
-    threads: int = 0,
+    close_gaps: Optional[Positive] = None,
+    threads: Threads = 0,
     progress: Optional[Progress] = None,
 ) -> Verification:
     """Checks that every contour of the layers is closed, that outer rings run counter-clockwise and holes clockwise
@@ -83,18 +80,11 @@ def verify(
 
     Raises InputError.
     """
-    threads, progress = check.thread_count(threads), check.listener(progress)
-    place = check.optional(check.choice, "at", at, PLACES)
-    snap, tolerance = check.distance("snap", snap), check.distance("tolerance", tolerance)
-    rule = check.optional(check.choice, "fill", fill, FILL_RULES)
-    if rule is not None and mesh is None:
+    if fill is not None and mesh is None:
         raise UsageError("fill goes with a mesh, and none is given")
-    stack = as_stack("layers", layers, threads=threads, progress=progress)
-    repairs = mending(weld_tolerance, drop_duplicates, orient)
-    gap = check.optional(check.positive, "close_gaps", close_gaps)
-    sliced = _mesh_as_sliced(mesh, direction, transform, unit_mm, repairs, gap, threads, progress)
+    stack = as_stack("layers", layers, threads, progress)
     return Verification(**_lamella.verify(
-        stack, sliced, place or "", snap, tolerance, gap, rule or "none", threads, progress
+        stack, _mesh_as_sliced(locals()), at or "", snap, tolerance, close_gaps, fill or "none", threads, progress
     ))  # fmt: skip
 
 
@@ -124,23 +114,23 @@ class VectorVerification:
         return self.ok
 
 
-@check.suggesting
+@check.arguments
 def verify_vectors(
     file: Readable,
     mesh: Optional[Sliceable] = None,
     *,
     strategy: StrategyLike = None,
     at: Optional[CutAt] = None,
-    snap: float = 0,
-    tolerance: float = 0,
-    direction: Vector = (0, 0, 1),
-    transform: Optional[npt.ArrayLike] = None,
-    unit_mm: Optional[float] = None,
-    weld_tolerance: Optional[float] = None,
+    snap: Distance = 0,
+    tolerance: Distance = 0,
+    direction: Coordinates = (0, 0, 1),
+    transform: Optional[Matrix] = None,
+    unit_mm: Optional[Positive] = None,
+    weld_tolerance: Optional[Positive] = None,
     drop_duplicates: bool = False,
     orient: bool = False,
-    close_gaps: Optional[float] = None,
-    threads: int = 0,
+    close_gaps: Optional[Positive] = None,
+    threads: Threads = 0,
     progress: Optional[Progress] = None,
 ) -> VectorVerification:
     """Checks a file of scan vectors: the contours of each exposure must be closed, oriented and without crossings, and
@@ -161,44 +151,29 @@ def verify_vectors(
 
     Raises InputError, and UsageError for a file without scan vectors.
     """
-    threads, progress = check.thread_count(threads), check.listener(progress)
-    place = check.optional(check.choice, "at", at, PLACES)
-    snap, tolerance = check.distance("snap", snap), check.distance("tolerance", tolerance)
     known = None if strategy is None else as_strategy("strategy", strategy)
-    repairs = mending(weld_tolerance, drop_duplicates, orient)
-    gap = check.optional(check.positive, "close_gaps", close_gaps)
-    sliced = _mesh_as_sliced(mesh, direction, transform, unit_mm, repairs, gap, threads, progress)
+    sliced = _mesh_as_sliced(locals())
     source = check.source("file", file)
     path = os.fsdecode(source[0] if isinstance(source, tuple) else source)
-    found, warnings = _lamella.verify_vectors(source, sliced, known, place or "", snap, tolerance, gap, threads, progress)
+    found, warnings = _lamella.verify_vectors(source, sliced, known, at or "", snap, tolerance, close_gaps, threads, progress)
     warn(f"{path}: {warning}" for warning in warnings)
     return VectorVerification(**found)
 
 
-def _mesh_as_sliced(
-    mesh: Optional[Sliceable],
-    direction: Vector,
-    transform: Optional[npt.ArrayLike],
-    unit_mm: Optional[float],
-    repairs: Mending,
-    close_gaps: Optional[float],
-    threads: int,
-    progress: Optional[Progress],
-) -> Optional[_lamella.Plate]:
-    where = placing(direction, transform)
-    if mesh is not None:
-        return plate_of("mesh", mesh, unit_mm, where, repairs, threads=threads, progress=progress)
-    given = {
-        "direction": where[0] != UPWARDS,
-        "transform": transform is not None,
-        "unit_mm": unit_mm is not None,
-        "weld_tolerance": repairs[0] is not None,
-        "drop_duplicates": repairs[1],
-        "orient": repairs[2],
-        "close_gaps": close_gaps is not None,
-    }
-    for name in given:
-        if given[name]:
+# The keywords that describe how a mesh was sliced, with the values that mean nothing.
+OF_A_MESH = {
+    "direction": UPWARDS, "transform": None, "unit_mm": None, "weld_tolerance": None, "drop_duplicates": False, "orient": False,
+    "close_gaps": None,
+}  # fmt: skip
+
+
+def _mesh_as_sliced(given: Dict[str, Any]) -> Optional[_lamella.Plate]:
+    if given["mesh"] is not None:
+        where = (given["direction"], given["transform"])
+        repairs = (given["weld_tolerance"], given["drop_duplicates"], given["orient"])
+        return plate_of("mesh", given["mesh"], given["unit_mm"], where, repairs, False, 0, given["threads"], given["progress"])
+    for name, nothing in OF_A_MESH.items():
+        if not (given[name] is nothing or (name == "direction" and given[name] == nothing)):
             raise UsageError(f"{name} goes with a mesh, and none is given")
     return None
 
@@ -228,13 +203,13 @@ class Comparison:
         return self.agree
 
 
-@check.suggesting
+@check.arguments
 def compare(
     first: Union[Readable, Stack],
     second: Union[Readable, Stack],
-    tolerance: Optional[float] = None,
+    tolerance: Optional[Distance] = None,
     *,
-    threads: int = 0,
+    threads: Threads = 0,
     progress: Optional[Progress] = None,
 ) -> Comparison:
     """Compares the contours of layers plane by plane. To compare hatch lines, heights and parameters of files, use the
@@ -249,10 +224,7 @@ def compare(
     Raises InputError. Issues a DefectWarning if no layers correspond because the two stacks are cut at different
     heights.
     """
-    tolerance = check.optional(check.distance, "tolerance", tolerance)
-    threads, progress = check.thread_count(threads), check.listener(progress)
-    one = as_stack("first", first, threads=threads, progress=progress)
-    other = as_stack("second", second, threads=threads, progress=progress)
+    one, other = (as_stack(name, layers, threads, progress) for name, layers in (("first", first), ("second", second)))
     tolerance, planes, cut_apart = _lamella.compare(one, other, tolerance, threads, progress)
     if cut_apart:
         low, high = one[0], other[0]

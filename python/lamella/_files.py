@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 import os
-from typing import Any, Iterable, Iterator, List, Optional, Sequence, Tuple, Union
+from functools import partial
+from typing import Annotated, Any, Iterable, Iterator, List, Optional, Sequence, Tuple, Union
 
 import numpy as np
 import numpy.typing as npt
 
 from . import _arguments as check
 from . import _lamella
-from ._arguments import FILL_RULES, BinaryWriter, FillRule, Mirror, Orientation, PathLike, Progress, Readable, Writable
+from ._arguments import (
+    Antialias, BinaryWriter, FillRule, Lengths, Mirror, Orientation, PathLike, Positive, Progress, Readable, Threads, Words,
+    Writable,
+)  # fmt: skip
 from ._errors import CancelledError, DefectError, InputError, UsageError
 from ._lamella import Exposure, Layer, LayerStream, Mesh, Stack
 from ._meshes import MeshLike, as_mesh, is_mesh
@@ -19,18 +23,14 @@ from ._warning import parts_lost, warn, with_arguments
 
 MESH_FORMATS = ("stl", "ply", "obj")
 
-# Property that a format must have for an option to apply. Options that are not listed here require an image format.
-ASKED_OF_FORMATS = {
-    "units_mm": "units",
-    "short_form": "short_form",
-    "exposure_s": "exposure",
-    "first_exposure_s": "exposure",
-    "fade_layers": "exposure",
-}
+# The options of formats, each with the property that a format must have for it to apply.
+OPTIONS = {
+    "units_mm": "units", "short_form": "short_form", "pixel_mm": "picture", "pixels": "picture", "display_mm": "picture",
+    "orientation": "picture", "mirror": "picture", "antialias": "picture", "gamma": "picture", "exposure_s": "exposure",
+    "first_exposure_s": "exposure", "fade_layers": "exposure",
+}  # fmt: skip
 # Formats that store the heights of layers unchanged, or no heights. They accept layers without thickness.
 WITHOUT_THICKNESS = ("json", "npz", "raw", "dxf", "geojson", "svg-layers", "png", "png-zip")
-MOST_PIXELS = 65535
-MOST_ANTIALIAS = 64
 
 BATCH_LAYERS = 64
 BATCH_POINTS = 2**22  # 64 MB
@@ -46,13 +46,22 @@ Planes = Tuple[List[Part], Iterator[List[Layer]], int, float, str]
 HEIGHTS = {"z": "cuts (z)", "bottom": "bottoms", "top": "tops", "index": "indices"}
 
 
-@check.suggesting
+def _columns_and_rows(name: str, value: Any) -> Tuple[int, int]:
+    return check.pair(name, value, "two whole numbers (columns, rows)", partial(check.whole, least=1, most=check.MOST_PIXELS))
+
+
+# Types of arguments, each with its check.
+Pixels = Annotated[Tuple[int, int], _columns_and_rows]
+Count = Annotated[int, partial(check.whole, most=2**32 - 1)]
+
+
+@check.arguments
 def read_layers(
     file: Readable,
     *,
     strict: bool = False,
     max_memory: int = 0,
-    threads: int = 0,
+    threads: Threads = 0,
     progress: Optional[Progress] = None,
 ) -> Stack:
     """Reads a slice file; the content determines the format.
@@ -65,13 +74,12 @@ def read_layers(
 
     Raises InputError for a file without layers, and LimitError.
     """
-    return stack_of_file("file", file, strict, check.whole("max_memory", max_memory), threads, progress)
+    return stack_of_file("file", file, strict, max_memory, threads, progress)
 
 
 def stack_of_file(
-    name: str, file: Any, strict: Any, max_memory: int, threads: Any, progress: Any
+    name: str, file: Any, strict: bool, max_memory: int, threads: int, progress: Optional[Progress]
 ) -> Stack:
-    strict, threads, progress = check.flag("strict", strict), check.thread_count(threads), check.listener(progress)
     stack, warnings = _lamella.read_layers(check.source(name, file), max_memory, threads, progress)
     _told(stack.path, warnings, strict)
     return stack
@@ -85,16 +93,16 @@ def _told(path: str, warnings: Sequence[str], strict: bool) -> None:
     warn(texts)
 
 
-@check.suggesting
+@check.arguments
 def read(
     file: Readable,
     *,
-    unit_mm: Optional[float] = None,
+    unit_mm: Optional[Positive] = None,
     strict: bool = False,
-    include: Union[str, Iterable[str]] = (),
+    include: Words = (),
     max_triangles: int = 0,
     max_memory: int = 0,
-    threads: int = 0,
+    threads: Threads = 0,
     progress: Optional[Progress] = None,
 ) -> Union[Mesh, Stack]:
     """Reads a mesh file or a slice file; the content determines the format. If only one of them will do, `read_mesh` and
@@ -120,8 +128,9 @@ def read(
     Raises InputError that reports the file, the location in it, the content found and the content expected, and
     UsageError if `unit_mm` is given for a slice file.
     """
+    source = check.source("file", file)
     read, warnings = _lamella.read_any(
-        *check.reading("file", file, unit_mm, strict, include, max_triangles, max_memory, threads, progress)
+        source, unit_mm, strict, include, max_triangles, max_memory, threads, progress  # type: ignore[arg-type]
     )
     if isinstance(read, Stack) and unit_mm is not None:
         raise UsageError(f"unit_mm goes with meshes, and {read.path} holds layers, which say their unit")
@@ -130,9 +139,7 @@ def read(
     return read
 
 
-def as_stack(
-    name: str, layers: Union[Readable, Stack], *, threads: int = 0, progress: Optional[Progress] = None
-) -> Stack:
+def as_stack(name: str, layers: Union[Readable, Stack], threads: int, progress: Optional[Progress]) -> Stack:
     if isinstance(layers, Stack):
         return layers
     if check.is_file(layers):
@@ -140,26 +147,26 @@ def as_stack(
     check.refuse_type(name, "a path, bytes, a binary file or a lamella.Stack", layers)
 
 
-@check.suggesting
+@check.arguments
 def write(
     file: Writable,
     content: Union[MeshLike, Layers],
     *,
     format: str = "",
-    units_mm: Optional[float] = None,
+    units_mm: Optional[Positive] = None,
     short_form: bool = False,
-    pixel_mm: Union[None, float, Tuple[float, float]] = None,
-    pixels: Optional[Tuple[int, int]] = None,
-    display_mm: Union[None, float, Tuple[float, float]] = None,
+    pixel_mm: Optional[Lengths] = None,
+    pixels: Optional[Pixels] = None,
+    display_mm: Optional[Lengths] = None,
     orientation: Optional[Orientation] = None,
     mirror: Optional[Mirror] = None,
-    antialias: Optional[int] = None,
-    gamma: Optional[float] = None,
-    exposure_s: Optional[float] = None,
-    first_exposure_s: Optional[float] = None,
-    fade_layers: Optional[int] = None,
+    antialias: Optional[Antialias] = None,
+    gamma: Optional[Positive] = None,
+    exposure_s: Optional[Positive] = None,
+    first_exposure_s: Optional[Positive] = None,
+    fade_layers: Optional[Count] = None,
     strict: bool = False,
-    threads: int = 0,
+    threads: Threads = 0,
     progress: Optional[Progress] = None,
 ) -> None:
     """Writes layers or a mesh to a file, whose extension selects the format. No reader ever sees an incomplete file.
@@ -195,35 +202,18 @@ def write(
     Raises OutputError, UsageError for an unknown format and for options that do not apply to it, and TypeError. Issues
     a DefectWarning for content that the format cannot represent.
     """
+    options = {name: value for name, value in locals().items() if name in OPTIONS and value is not None and value is not False}
     target, output = check.target("file", file)
     known = os.fsdecode(target)
-    threads, progress = check.thread_count(threads), check.listener(progress)
-    format = check.text("format", format)
-    options = {
-        "units_mm": check.optional(check.positive, "units_mm", units_mm),
-        "short_form": check.flag("short_form", short_form) or None,
-        "pixel_mm": check.optional(check.lengths, "pixel_mm", pixel_mm),
-        "pixels": check.optional(_columns_and_rows, "pixels", pixels),
-        "display_mm": check.optional(check.lengths, "display_mm", display_mm),
-        "orientation": check.optional(check.choice, "orientation", orientation, ("landscape", "portrait")),
-        "mirror": check.optional(check.choice, "mirror", mirror, ("none", "x", "y", "xy")),
-        "antialias": check.optional(check.whole, "antialias", antialias, 1, MOST_ANTIALIAS),
-        "gamma": check.optional(check.positive, "gamma", gamma),
-        "exposure_s": check.optional(check.positive, "exposure_s", exposure_s),
-        "first_exposure_s": check.optional(check.positive, "first_exposure_s", first_exposure_s),
-        "fade_layers": check.optional(check.whole, "fade_layers", fade_layers, 0, 2**32 - 1),
-    }
-    given = {name: value for name, value in options.items() if value is not None}
-    strict = check.flag("strict", strict)
     if is_mesh(content):
-        _write_mesh(target, output, as_mesh("content", content), format, list(given), strict)
+        _write_mesh(target, output, as_mesh("content", content), format, list(options), strict)
         return
     parts, planes, total, bottom, rule = _planes(content, strict)
-    name = _format_for(target, format, given)
+    name = _format_for(target, format, options)
     if name not in WITHOUT_THICKNESS and not (isinstance(content, Stack) and content.path):
         planes = _with_thickness(name, planes)
     writer = _lamella.open_writer(
-        target, name, parts, total, bottom, rule, {**given, "strict": strict}, output is not None
+        target, name, parts, total, bottom, rule, {**options, "strict": strict}, output is not None
     )
     done = 0
     try:
@@ -252,20 +242,13 @@ def _with_thickness(name: str, planes: Iterable[List[Layer]]) -> Iterator[List[L
         yield plane
 
 
-def _columns_and_rows(name: str, value: Any) -> Tuple[int, int]:
-    def side(name: str, value: Any) -> int:
-        return check.whole(name, value, 1, MOST_PIXELS)
-
-    return check.pair(name, value, "two whole numbers (columns, rows)", side)
-
-
 def _format_for(path: bytes, format: str, given: Iterable[str]) -> str:
     """Returns the name of the format, to which all given options apply."""
     if format:
         check.choice("format", format, [row[0] for row in layer_formats()])
     name = _lamella.layer_format(format, path)
     for option in given:
-        formats = _lamella.formats_with(ASKED_OF_FORMATS.get(option, "picture"))
+        formats = _lamella.formats_with(OPTIONS[option])
         if name not in formats:
             several = "formats" if len(formats) > 1 else "format"
             raise UsageError(f"{option} goes with the {several} {', '.join(formats)}, not with {name}")
@@ -397,27 +380,27 @@ def _collected(content: Any) -> List[Any]:
     return found
 
 
-@check.suggesting
+@check.arguments
 def convert(
     source: Readable,
     target: Writable,
     *,
     fill: Optional[FillRule] = None,
     format: str = "",
-    units_mm: Optional[float] = None,
+    units_mm: Optional[Positive] = None,
     short_form: bool = False,
-    pixel_mm: Union[None, float, Tuple[float, float]] = None,
-    pixels: Optional[Tuple[int, int]] = None,
-    display_mm: Union[None, float, Tuple[float, float]] = None,
+    pixel_mm: Optional[Lengths] = None,
+    pixels: Optional[Pixels] = None,
+    display_mm: Optional[Lengths] = None,
     orientation: Optional[Orientation] = None,
     mirror: Optional[Mirror] = None,
-    antialias: Optional[int] = None,
-    gamma: Optional[float] = None,
-    exposure_s: Optional[float] = None,
-    first_exposure_s: Optional[float] = None,
-    fade_layers: Optional[int] = None,
+    antialias: Optional[Antialias] = None,
+    gamma: Optional[Positive] = None,
+    exposure_s: Optional[Positive] = None,
+    first_exposure_s: Optional[Positive] = None,
+    fade_layers: Optional[Count] = None,
     strict: bool = False,
-    threads: int = 0,
+    threads: Threads = 0,
     progress: Optional[Progress] = None,
 ) -> None:
     """Reads the layers of a slice file and writes them in another format. Contours are unchanged except for the
@@ -435,23 +418,19 @@ def convert(
     path, output = check.target("target", target)
     if output is None and isinstance(source, (str, os.PathLike)) and _same_file(source, path):
         raise UsageError(f"{os.fsdecode(path)}: the output would overwrite the input")
+    given = locals()
     stack = stack_of_file("source", source, strict, 0, threads, progress)
     if len(stack) == 0:
         raise InputError(f"{stack.path}: holds no layers")
-    rule = check.optional(check.choice, "fill", fill, FILL_RULES)
-    if rule is not None:
-        stack = _filled(stack, rule, strict, threads, progress)
+    if fill is not None:
+        stack = _filled(stack, fill, strict, threads, progress)
     elif all(part.exposure is None for part in stack.parts):
         inverted = [f"{stack.path}: {text}" for text in _lamella.inverted_layers(stack, threads, progress)]
         if strict and inverted:
             raise DefectError(with_arguments(inverted[0]))
         warn(inverted)
-    write(
-        target, stack, format=format, units_mm=units_mm, short_form=short_form, pixel_mm=pixel_mm, pixels=pixels,
-        display_mm=display_mm, orientation=orientation, mirror=mirror, antialias=antialias, gamma=gamma,
-        exposure_s=exposure_s, first_exposure_s=first_exposure_s, fade_layers=fade_layers, strict=strict,
-        threads=threads, progress=progress,
-    )  # fmt: skip
+    options = {name: given[name] for name in OPTIONS}
+    write(target, stack, format=format, strict=strict, threads=threads, progress=progress, **options)
 
 
 def _filled(stack: Stack, rule: str, strict: bool, threads: int, progress: Optional[Progress]) -> Stack:

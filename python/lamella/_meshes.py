@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from . import _arguments as check
 from . import _lamella
-from ._arguments import Progress, Readable, Vector
+from ._arguments import Positive, Progress, Readable, Threads, Words
 from ._errors import InputError, UsageError
 from ._lamella import Mesh
 from ._warning import warn
@@ -143,16 +143,16 @@ class Inspection:
         return ", ".join(f"{count} {one if count == 1 else many}" for count, one, many in kinds if count)
 
 
-@check.suggesting
+@check.arguments
 def read_mesh(
     file: Readable,
     *,
-    unit_mm: Optional[float] = None,
+    unit_mm: Optional[Positive] = None,
     strict: bool = False,
-    include: Union[str, Iterable[str]] = (),
+    include: Words = (),
     max_triangles: int = 0,
     max_memory: int = 0,
-    threads: int = 0,
+    threads: Threads = 0,
     progress: Optional[Progress] = None,
 ) -> Mesh:
     """Reads a mesh file; the content determines the format.
@@ -173,8 +173,8 @@ def read_mesh(
     return _mesh_of_file("file", file, unit_mm, strict, include, max_triangles, max_memory, threads, progress)
 
 
-def _mesh_of_file(name: str, *reading: Any) -> Mesh:
-    mesh = _lamella.read_mesh(*check.reading(name, *reading))
+def _mesh_of_file(name: str, file: Any, *reading: Any) -> Mesh:
+    mesh = _lamella.read_mesh(check.source(name, file), *reading)
     warn(f"{mesh.path}: {warning}" for warning in mesh.warnings)
     return mesh
 
@@ -285,15 +285,15 @@ def is_mesh(thing: Any) -> bool:
 def as_mesh(
     name: str,
     part: Any,
-    unit_mm: Any = None,
-    strict: Any = False,
-    max_memory: Any = 0,
-    threads: Any = 0,
-    progress: Any = None,
+    unit_mm: Optional[float] = None,
+    strict: bool = False,
+    max_memory: int = 0,
+    threads: int = 0,
+    progress: Optional[Progress] = None,
 ) -> Mesh:
     """Returns a mesh made from any supported object. The other arguments are for files."""
     if check.is_file(part):
-        return _mesh_of_file(name, part, unit_mm, strict, (), 0, max_memory, threads, progress)
+        return _mesh_of_file(name, part, unit_mm, strict, "", 0, max_memory, threads, progress)
     if unit_mm is not None:
         raise UsageError("unit_mm goes with files: arrays and meshes are in millimetres; scale them")
     if isinstance(part, Mesh):
@@ -313,14 +313,8 @@ def as_mesh(
     )
 
 
+# The direction and the transform.
 Placing = Tuple[Tuple[float, ...], Optional[npt.NDArray[np.float64]]]
-
-
-def placing(direction: Vector, transform: Optional[npt.ArrayLike]) -> Placing:
-    rows = None
-    if transform is not None:
-        rows = check.finite("transform", check.shaped("transform", transform, (4, 4), "a matrix of the shape (4, 4)"))
-    return check.several("direction", direction, 3, "three numbers (x, y, z)", check.number), rows
 
 
 def placed(mesh: Mesh, where: Placing, threads: int) -> Mesh:
@@ -335,23 +329,15 @@ def placed(mesh: Mesh, where: Placing, threads: int) -> Mesh:
 Mending = Tuple[Optional[float], bool, bool]
 
 
-def mending(weld_tolerance: Optional[float], drop_duplicates: bool, orient: bool) -> Mending:
-    return (
-        check.optional(check.positive, "weld_tolerance", weld_tolerance),
-        check.flag("drop_duplicates", drop_duplicates),
-        check.flag("orient", orient),
-    )
-
-
-@check.suggesting
+@check.arguments
 def mend(
     part: MeshLike,
     *,
-    weld_tolerance: Optional[float] = None,
+    weld_tolerance: Optional[Positive] = None,
     drop_duplicates: bool = False,
     orient: bool = False,
-    unit_mm: Optional[float] = None,
-    threads: int = 0,
+    unit_mm: Optional[Positive] = None,
+    threads: Threads = 0,
     progress: Optional[Progress] = None,
 ) -> Mesh:
     """Returns a repaired mesh, whose `repairs` has the counts. Slicing it gives the layers that `slice` gives with the
@@ -365,30 +351,25 @@ def mend(
 
     Raises UsageError, InputError if nothing is left of the mesh, LimitError.
     """
-    wanted = mending(weld_tolerance, drop_duplicates, orient)
+    wanted = (weld_tolerance, drop_duplicates, orient)
     if not any(wanted):
         raise UsageError("mend: expected weld_tolerance, drop_duplicates or orient")
-    threads, progress = check.thread_count(threads), check.listener(progress)
-    mesh = as_mesh("part", part, unit_mm=unit_mm, threads=threads, progress=progress)
-    return mesh._mended(wanted, threads, progress)
+    return as_mesh("part", part, unit_mm, False, 0, threads, progress)._mended(wanted, threads, progress)
 
 
-@check.suggesting
+@check.arguments
 def inspect(
     part: MeshLike,
     *,
     self_intersections: bool = False,
     keep: int = 16,
-    unit_mm: Optional[float] = None,
-    threads: int = 0,
+    unit_mm: Optional[Positive] = None,
+    threads: Threads = 0,
     progress: Optional[Progress] = None,
 ) -> Inspection:
     """Counts the defects of a mesh, and reports where they are. Nothing is repaired.
 
-    part: a path, bytes, or a file object that is open for reading bytes; a Mesh, a pair of arrays (vertices (n, 3) in
-        millimetres, faces (m, 3)), an array of triangles (m, 3, 3), or anything with .vertices and .faces, .vertices and
-        .triangles, .points and .faces, .points and .cells_dict, or .vectors, such as a trimesh.Trimesh, a mesh of Open3D,
-        PyVista, meshio or numpy-stl, or a vtkPolyData.
+    part: a path, bytes, a file object, or another mesh, as for `slice`.
     self_intersections: looks for triangles that cross, overlap or touch one another, too, which takes longer.
     keep: largest number of locations of each kind; the counts are complete.
     unit_mm: millimetres per unit, for a file that does not specify its unit; 1 by default.
@@ -397,9 +378,7 @@ def inspect(
 
     Raises InputError for a file that cannot be read.
     """
-    self_intersections, keep = check.flag("self_intersections", self_intersections), check.whole("keep", keep)
-    threads, progress = check.thread_count(threads), check.listener(progress)
-    mesh = as_mesh("part", part, unit_mm=unit_mm, threads=threads, progress=progress)
+    mesh = as_mesh("part", part, unit_mm, False, 0, threads, progress)
     fields = mesh._diagnosed(self_intersections, keep, threads, progress)
     met = fields["self_intersections"]
     if met is not None:

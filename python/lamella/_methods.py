@@ -4,12 +4,13 @@ Python, and then passed to the extension's method whose name begins with an unde
 from __future__ import annotations
 
 import decimal
+import functools
 import inspect
 import numbers
 import tempfile
 import webbrowser
 from pathlib import Path
-from typing import Any, Callable, Dict, Iterable, List, Literal, NamedTuple, Optional, Tuple, TypeVar, Union
+from typing import Annotated, Any, Callable, Dict, Iterable, List, Literal, NamedTuple, Optional, Tuple, TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -17,7 +18,7 @@ import numpy.typing as npt
 from . import _arguments as check
 from . import _lamella
 from ._errors import UsageError
-from ._files import MOST_ANTIALIAS, MOST_PIXELS, write
+from ._files import write
 from ._looking import layer_svg, plot_layer, stack_html
 from ._meshes import arrays_of_mesh
 from ._shapely import contours_of, multi_polygon
@@ -53,10 +54,10 @@ def _methods_of(cls: type) -> Callable[[T], T]:
     def give(source: T) -> T:
         for name, method in vars(source).items():
             if isinstance(method, classmethod):
-                setattr(cls, name, classmethod(check.suggesting(method.__func__)))
+                setattr(cls, name, classmethod(check.arguments(method.__func__)))
             elif callable(method):
                 takes_keywords = name == "__init__" or not name.startswith("_")
-                setattr(cls, name, check.suggesting(method) if takes_keywords else method)
+                setattr(cls, name, check.arguments(method) if takes_keywords else method)
                 if name == "__init__":
                     _show_signature(cls)
         return source
@@ -102,6 +103,12 @@ def _contours(name: str, contours: Any) -> Tuple[npt.NDArray[np.float64], ...]:
     return check.several(name, contours, None, "contours, each an array of the shape (n, 2)", contour)
 
 
+# Types of arguments, each with its check.
+Window = Annotated[npt.ArrayLike, _window]
+Contours = Annotated[Iterable[npt.ArrayLike], _contours]
+MitreLimit = Annotated[float, functools.partial(check.number, least=1, expected="a number, 1 or more")]
+
+
 def _made_of(made: _lamella.Layer, *layers: _lamella.Layer) -> _lamella.Layer:
     lost = sum(len(layer.hatches) for layer in layers) - len(made.hatches)
     if lost > 0:
@@ -115,22 +122,20 @@ def _made_of(made: _lamella.Layer, *layers: _lamella.Layer) -> _lamella.Layer:
 class Layer(_lamella.Layer):
     def __init__(
         self,
-        rings: Iterable[npt.ArrayLike],
+        rings: Contours,
         z: float,
         bottom: Optional[float] = None,
         top: Optional[float] = None,
         index: int = 0,
-        chains: Iterable[npt.ArrayLike] = (),
+        chains: Contours = (),
     ) -> None:
-        height = check.number("z", z)
-        below = height if bottom is None else check.number("bottom", bottom)
-        above = height if top is None else check.number("top", top)
-        if not below <= height <= above:
+        below = z if bottom is None else bottom
+        above = z if top is None else top
+        if not below <= z <= above:
             raise UsageError(
-                f"z: {check.excerpt(z)} is not possible; a layer is cut between its bottom, {below}, and its top, {above}"
+                f"z: {z:g} is not possible; a layer is cut between its bottom, {below}, and its top, {above}"
             )
-        number = check.whole("index", index)
-        _make_layer(self, _contours("rings", rings), height, below, above, number, _contours("chains", chains))
+        _make_layer(self, rings, z, below, above, index, chains)
 
     @classmethod
     def from_shapely(
@@ -161,16 +166,14 @@ class Layer(_lamella.Layer):
         the indices of its holes. Open chains, and rings that bound no material, are left out."""
         return self._polygons()
 
-    def diagnose(self, *, resolution: float = 0, crossings: int = 100) -> List[ContourDefect]:
+    def diagnose(self, *, resolution: check.Distance = 0, crossings: int = 100) -> List[ContourDefect]:
         """Returns the defects of the contours, as `verify` counts them: open chains, crossings, then rings.
 
         resolution: the rounding of the file that the layer comes from, in millimetres, which is Stack.resolution. Rings so
             thin that rounding can invert them may have either orientation.
         crossings: lists at most this many crossings; a DefectWarning reports if there are more.
         """
-        found, total, or_more = self._diagnosed(
-            check.distance("resolution", resolution), check.whole("crossings", crossings)
-        )
+        found, total, or_more = self._diagnosed(resolution, crossings)
         if total > crossings or or_more:
             ended = " or more, so that rings were not checked" if or_more else ""
             warn([f"the layer at z = {self.z:g} mm has {total} crossings{ended}; {min(total, crossings)} of them are listed"])
@@ -184,15 +187,15 @@ class Layer(_lamella.Layer):
     def filled(self, rule: check.FillRule = "nonzero") -> _lamella.Layer:
         """Returns the layer with overlapping bodies united. Material is where the winding number satisfies `rule`:
         "nonzero", "evenodd" or "positive". Rings that do not overlap others keep their points."""
-        return _made_of(self._filled(check.choice("rule", rule, check.FILL_RULES)), self)
+        return _made_of(self._filled(rule), self)
 
     def offset(
         self,
         distance: Any,
         corners: check.Corners = "mitre",
         *,
-        mitre_limit: float = 2,
-        arc_tolerance: float = 0.001,
+        mitre_limit: MitreLimit = 2,
+        arc_tolerance: check.Positive = 0.001,
     ) -> Any:
         """Returns the layer with its material grown by `distance` millimetres, or shrunk if that is negative. For several
         distances returns a list with a layer for each, which takes less time than one after the other.
@@ -201,20 +204,18 @@ class Layer(_lamella.Layer):
         mitre_limit: a mitre whose tip would be farther than this many distances from its corner is cut off, 1 or more.
         arc_tolerance: largest distance of the chords of round corners from their arc, in millimetres.
         """
-        corner = check.choice("corners", corners, ("mitre", "bevel", "round"))
-        limit = check.number("mitre_limit", mitre_limit, least=1, expected="a number, 1 or more")
-        chord = check.positive("arc_tolerance", arc_tolerance)
+        way = (corners, mitre_limit, arc_tolerance)
         if isinstance(distance, (numbers.Real, decimal.Decimal)) or check.is_array_of_one(distance):
-            return _made_of(self._offsets([check.number("distance", distance)], corner, limit, chord)[0], self)
+            return _made_of(self._offsets([check.number("distance", distance)], *way)[0], self)
         several = check.several("distance", distance, None, "a number or several", check.number)
-        return [_made_of(made, self) for made in self._offsets(several, corner, limit, chord)]
+        return [_made_of(made, self) for made in self._offsets(several, *way)]
 
     def image(
         self,
-        pixel_mm: Union[float, Tuple[float, float]],
+        pixel_mm: check.Lengths,
         *,
-        bounds: Optional[npt.ArrayLike] = None,
-        antialias: int = 8,
+        bounds: Optional[Window] = None,
+        antialias: check.Antialias = 8,
     ) -> npt.NDArray[np.uint8]:
         """Returns the material as an image: (rows, columns) uint8, the row with the largest y first. The value of a pixel
         is 255 times the fraction of it that is material, rounded.
@@ -226,18 +227,17 @@ class Layer(_lamella.Layer):
 
         Raises UsageError, also for more than 65,535 rows or columns.
         """
-        size = check.lengths("pixel_mm", pixel_mm)
-        levels = check.whole("antialias", antialias, 1, MOST_ANTIALIAS)
-        box = self.bounds if bounds is None else _window("bounds", bounds)
+        box: Any = self.bounds if bounds is None else bounds
         if not len(self.points) and bounds is None:
             return np.zeros((0, 0), dtype=np.uint8)
         with np.errstate(over="ignore"):
-            count = np.maximum(1, np.ceil((box[1] - box[0]) / size * (1 - 1e-12)))  # quotients are rounded
-        if not (count <= MOST_PIXELS).all():
+            count = np.maximum(1, np.ceil((box[1] - box[0]) / pixel_mm * (1 - 1e-12)))  # quotients are rounded
+        if not (count <= check.MOST_PIXELS).all():
             raise UsageError(
-                f"pixel_mm: {count[0]:g} x {count[1]:g} pixels are too many; an image has at most {MOST_PIXELS} each way"
+                f"pixel_mm: {count[0]:g} x {count[1]:g} pixels are too many; an image has at most {check.MOST_PIXELS} each way"
             )
-        return self._image(*size, box[0, 0], box[1, 1], int(count[0]), int(count[1]), levels)
+        width, height = pixel_mm  # type: ignore[misc]
+        return self._image(width, height, box[0, 0], box[1, 1], int(count[0]), int(count[1]), antialias)
 
     def union(self, other: _lamella.Layer) -> _lamella.Layer:
         """Returns the union of the material of this layer and `other`. Material is where the winding number is
@@ -256,9 +256,9 @@ class Layer(_lamella.Layer):
         """Returns the symmetric difference of the material of this layer and `other`; see `union`."""
         return _made_of(self._symmetric_difference(_one_layer("other", other, "a layer")), self, other)
 
-    def simplified(self, tolerance: float) -> _lamella.Layer:
+    def simplified(self, tolerance: check.Distance) -> _lamella.Layer:
         """Returns the layer with fewer points. No contour moves by more than `tolerance` millimetres."""
-        return _made_of(self._simplified(check.distance("tolerance", tolerance)), self)
+        return _made_of(self._simplified(tolerance), self)
 
     def plot(self, axes: Any = None) -> Any:
         """Draws the layer into axes of matplotlib, new ones if none are given, and returns the axes. Open chains are
@@ -313,12 +313,11 @@ class Stack(_lamella.Stack):
     def at(self, z: float) -> _lamella.Layer:
         """Returns the layer whose material is at the height `z` in millimetres; where one layer ends and the next one
         begins, the upper one. Raises UsageError if there is none."""
-        height = check.number("z", z)
-        i = int(np.searchsorted(self.bottom, height, side="right")) - 1
-        if i >= 0 and height <= self[i].top:
+        i = int(np.searchsorted(self.bottom, z, side="right")) - 1
+        if i >= 0 and z <= self[i].top:
             return self[i]  # type: ignore[no-any-return]
         reach = f"they reach from {self.bottom[0]:g} to {self.top[-1]:g} mm" if len(self) else "the stack is empty"
-        raise UsageError(f"z: there is no layer at {height:g} mm; {reach}")
+        raise UsageError(f"z: there is no layer at {z:g} mm; {reach}")
 
     def _repr_html_(self) -> str:
         return stack_html(self)
@@ -422,7 +421,7 @@ def _is_made_of_its_attributes(cls: type) -> None:
 
     __init__.__qualname__ = f"{cls.__name__}.__init__"  # the name in its errors
     setattr(__init__, "__signature__", inspect.Signature(parameters))
-    setattr(cls, "__init__", check.suggesting(__init__))
+    setattr(cls, "__init__", check.arguments(__init__))
     _show_signature(cls)
 
 

@@ -5,21 +5,26 @@ from __future__ import annotations
 import decimal
 import numbers
 from dataclasses import dataclass
-from typing import Any, List, Literal, Optional, Sequence, Tuple, Union
+from functools import partial
+from typing import Annotated, Any, List, Literal, Optional, Sequence, Tuple, Union
 
 import numpy as np
-import numpy.typing as npt
 
 from . import _arguments as check
 from . import _lamella
-from ._arguments import Progress, Vector
+from ._arguments import Coordinates, Distance, Matrix, Positive, Progress, Vector
 from ._errors import DefectError, UsageError
 from ._lamella import Mesh
 from ._meshes import UPWARDS, Mending, MeshLike, Placing, as_mesh, placed
 
-COORDINATES = "three numbers (x, y, z)"
+
+def _scale(name: str, value: Any) -> Tuple[float, ...]:
+    if isinstance(value, (numbers.Real, decimal.Decimal)) or check.is_array_of_one(value):
+        value = (value,) * 3
+    return check.several(name, value, 3, "a number, or three (x, y, z)", check.positive)
 
 
+@check.construction
 @dataclass(frozen=True, eq=False)
 class Part:
     """A mesh on a plate, with its position and its role. In this order it is transformed by the matrix, scaled, rotated
@@ -38,46 +43,23 @@ class Part:
     """
 
     mesh: MeshLike
-    matrix: Optional[npt.ArrayLike] = None
-    scale: Union[float, Vector] = 1
-    rotation: Vector = (0, 0, 0)
-    position: Vector = (0, 0, 0)
-    copies: int = 1
-    spacing: float = 5
+    matrix: Optional[Matrix] = None
+    scale: Annotated[Union[float, Vector], _scale] = 1
+    rotation: Coordinates = (0, 0, 0)
+    position: Coordinates = (0, 0, 0)
+    copies: Annotated[int, partial(check.whole, least=1)] = 1
+    spacing: Distance = 5
     label: str = ""
     role: Literal["solid", "support", "negative"] = "solid"
-    unit_mm: Optional[float] = None
+    unit_mm: Optional[Positive] = None
 
-    def __post_init__(self) -> None:
-        check.optional(check.positive, "unit_mm", self.unit_mm)
-        self._checked()
+    def _on_plate(self, mesh: Mesh) -> Tuple[Any, ...]:
+        """Returns the part as the extension takes it, with the mesh that was read."""
+        pose = (self.scale, self.rotation, self.position)
+        matrix = np.eye(4) if self.matrix is None else self.matrix
+        label = check.label("label", self.label) or (b"" if mesh.path else b"part")
+        return mesh, pose, matrix, self.copies, self.spacing, label, self.role == "support", self.role == "negative"
 
-    def _checked(self) -> Tuple[Any, ...]:
-        """Returns the arguments after `mesh`, as the extension takes them."""
-        matrix = np.eye(4)
-        if self.matrix is not None:
-            matrix = check.shaped("matrix", self.matrix, (4, 4), "a matrix of the shape (4, 4)")
-        scale = self.scale
-        if isinstance(scale, (numbers.Real, decimal.Decimal)) or check.is_array_of_one(scale):
-            scale = (scale,) * 3  # type: ignore[assignment]
-        pose = (
-            check.several("scale", scale, 3, "a number, or three (x, y, z)", check.positive),
-            check.several("rotation", self.rotation, 3, COORDINATES, check.number),
-            check.several("position", self.position, 3, COORDINATES, check.number),
-        )
-        role = check.choice("role", self.role, ("solid", "support", "negative"))
-        return (
-            pose,
-            check.finite("matrix", matrix),
-            check.whole("copies", self.copies, 1),
-            check.distance("spacing", self.spacing),
-            check.label("label", self.label),
-            role == "support",
-            role == "negative",
-        )
-
-
-setattr(Part, "__init__", check.suggesting(Part.__init__))
 
 Sliceable = Union[MeshLike, Part, Sequence[Part]]
 
@@ -99,19 +81,16 @@ def plate_of(
     part: Sliceable,
     unit_mm: Optional[float],
     whole: Placing,
-    mending: Mending = (None, False, False),
-    *,
-    strict: bool = False,
-    max_memory: int = 0,
+    mending: Mending,
+    strict: bool,
+    max_memory: int,
     threads: int,
     progress: Optional[Progress],
 ) -> _lamella.Plate:
     """Returns the plate of a mesh or of parts. `whole` places all of it."""
 
     def mesh_of(thing: MeshLike, unit_mm: Optional[float]) -> Mesh:
-        mesh = as_mesh(
-            name, thing, unit_mm=unit_mm, strict=strict, max_memory=max_memory, threads=threads, progress=progress
-        )
+        mesh = as_mesh(name, thing, unit_mm, strict, max_memory, threads, progress)
         if strict:
             defects = mesh._defects(threads, progress)
             if defects:
@@ -124,11 +103,7 @@ def plate_of(
         return _lamella.plate_of_mesh(mesh, mending, threads, progress)
     if unit_mm is not None:
         raise UsageError("unit_mm: each part of a plate has its own, such as lamella.Part(..., unit_mm=25.4)")
-    on_plate = []
-    for one in parts:
-        mesh = mesh_of(one.mesh, one.unit_mm)
-        pose, matrix, copies, spacing, label, *role = one._checked()
-        on_plate.append((mesh, pose, matrix, copies, spacing, label or (b"" if mesh.path else b"part"), *role))
+    on_plate = [one._on_plate(mesh_of(one.mesh, one.unit_mm)) for one in parts]
     direction, transform = whole
     return _lamella.plate_of_parts(
         on_plate, transform, None if direction == UPWARDS else direction, mending, max_memory, threads, progress

@@ -83,11 +83,11 @@ class ScanLayer:
             spent += np.divide(length, by, out=np.zeros(len(lines)), where=by > 0)
         return np.cumsum(spent + 1e-6 * (last * mark_delay + (jump > 0) * jump_delay))
 
+    @check.arguments
     def plot(self, axes: Any = None, *, by: Literal["exposure", "region", "order", "time"] = "exposure") -> Any:
         """Draws the vectors into axes of matplotlib, new ones if none are given, and returns the axes. `by` chooses the
         colours: one for each exposure, one for each region, or one that shows the order or the time of the lines. Needs
         matplotlib."""
-        check.choice("by", by, ("exposure", "region", "order", "time"))
         if by == "order":
             return plot_values(self.vectors, np.arange(len(self.exposure)), "order of lines", self.z, axes)
         if by == "time":
@@ -171,7 +171,7 @@ def scan(
 def scan(
     layers: Iterable[Layer], strategy: StrategyLike = None, part: Optional[str] = None, *, support: bool = False
 ) -> Iterator[ScanLayer]: ...
-@check.suggesting
+@check.arguments
 def scan(
     layers: Iterable[Layer], strategy: StrategyLike = None, part: Optional[str] = None, *, support: bool = False
 ) -> Iterator[ScanLayer]:
@@ -204,8 +204,7 @@ def scan(
     except TypeError:
         check.refuse_type("layers", "layers in ascending z", layers)
     known = as_strategy("strategy", strategy)
-    label = check.optional(check.label, "part", part)
-    parts = _parts_to_scan(layers, label, check.flag("support", support))
+    parts = _parts_to_scan(layers, None if part is None else check.label("part", part), support)
     if isinstance(layers, Stack):
         _check_stack(layers)
         each = iter(list(each))
@@ -353,13 +352,12 @@ class PyslmLayer:
         return []
 
 
-@check.suggesting
+@check.arguments
 def to_pyslm(layer: ScanLayer, mid: int = 1) -> PyslmLayer:
     """Converts a layer for tools that accept PySLM's layers; PySLM itself is not needed. `mid` is the number of the
     model. Build styles (`bid`) are numbered like the exposures, from 1."""
     if not isinstance(layer, ScanLayer):
         check.refuse_type("layer", "a ScanLayer", layer)
-    mid = check.whole("mid", mid)
     geometry = []
     for bid, (exposure, vectors) in enumerate(layer, 1):
         if len(vectors.hatches):

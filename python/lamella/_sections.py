@@ -10,12 +10,10 @@ import numpy.typing as npt
 
 from . import _arguments as check
 from . import _lamella
-from ._arguments import Progress, Rule, Vector
+from ._arguments import Coordinates, Positive, Progress, Rule, Threads
 from ._errors import UsageError
 from ._lamella import Layer, Mesh
 from ._meshes import MeshLike, as_mesh
-
-RULES = ("section_above", "section_below")
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,10 +35,7 @@ class Slicer:
     """A mesh that is prepared for many single planes. A plane then costs in proportion to the triangles that it cuts,
     not to all of them. Threads may share a slicer.
 
-    part: a path, bytes, or a file object that is open for reading bytes; a Mesh, a pair of arrays (vertices (n, 3) in
-        millimetres, faces (m, 3)), an array of triangles (m, 3, 3), or anything with .vertices and .faces, .vertices and
-        .triangles, .points and .faces, .points and .cells_dict, or .vectors, such as a trimesh.Trimesh, a mesh of Open3D,
-        PyVista, meshio or numpy-stl, or a vtkPolyData.
+    part: a path, bytes, a file object, or another mesh, as for `slice`.
     rule: what a plane through vertices cuts: "section_above" is the section just above the plane, "section_below" the
         one just below it.
     unit_mm: millimetres per unit, for a file that does not specify its unit; 1 by default.
@@ -51,31 +46,30 @@ class Slicer:
     Raises UsageError, InputError, LimitError.
     """
 
-    @check.suggesting
+    @check.arguments
     def __init__(
         self,
         part: MeshLike,
         *,
         rule: Rule = "section_above",
-        unit_mm: Optional[float] = None,
-        threads: int = 0,
+        unit_mm: Optional[Positive] = None,
+        threads: Threads = 0,
         progress: Optional[Progress] = None,
     ) -> None:
-        threads, progress = check.thread_count(threads), check.listener(progress)
-        self.mesh: Mesh = as_mesh("part", part, unit_mm=unit_mm, threads=threads, progress=progress)
-        self._prepared = _lamella.PreparedMesh(self.mesh, check.choice("rule", rule, RULES), threads, progress)
+        self.mesh: Mesh = as_mesh("part", part, unit_mm, False, 0, threads, progress)
+        self._prepared = _lamella.PreparedMesh(self.mesh, rule, threads, progress)
 
     @overload
     def section(self, z: float) -> Layer: ...
     @overload
-    def section(self, *, origin: Vector, normal: Vector) -> Section: ...
-    @check.suggesting
+    def section(self, *, origin: Coordinates, normal: Coordinates) -> Section: ...
+    @check.arguments
     def section(
         self,
         z: Optional[float] = None,
         *,
-        origin: Optional[Vector] = None,
-        normal: Optional[Vector] = None,
+        origin: Optional[Coordinates] = None,
+        normal: Optional[Coordinates] = None,
     ) -> Union[Layer, Section]:
         """Returns the section with one plane.
 
@@ -91,15 +85,12 @@ class Slicer:
         if z is not None:
             if origin is not None or normal is not None:
                 raise UsageError("z contradicts origin and normal: each says where to cut")
-            return self._prepared.level(check.number("z", z))
+            return self._prepared.level(z)
         if origin is None or normal is None:
             raise UsageError("section: expected z, or origin and normal")
-        expected = "three numbers (x, y, z)"
-        point = check.several("origin", origin, 3, expected, check.number)
-        upwards = check.several("normal", normal, 3, expected, check.number)
-        if not any(upwards):
+        if not any(normal):
             raise UsageError("normal: (0, 0, 0) has no direction; expected three numbers (x, y, z), not all 0")
-        return Section(*self._prepared.tilted(point, upwards))
+        return Section(*self._prepared.tilted(tuple(origin), tuple(normal)))
 
     def __repr__(self) -> str:
         return f"<lamella.Slicer: {len(self.mesh)} triangles>"

@@ -4,17 +4,16 @@ from __future__ import annotations
 
 import functools
 import inspect
-from typing import TYPE_CHECKING, Any, Callable, Dict, List, NamedTuple, Optional, Sequence, Tuple, TypeVar, Union
+from typing import TYPE_CHECKING, Annotated, Any, Callable, Dict, List, NamedTuple, Optional, Sequence, Tuple, TypeVar, Union
 
 import numpy as np
 import numpy.typing as npt
 
 from . import _arguments as check
 from . import _lamella
-from ._arguments import FILL_RULES, CutAt, FillRule, Progress, Vector
+from ._arguments import Coordinates, CutAt, Distance, FillRule, Matrix, Positive, Progress, Threads
 from ._errors import DefectError, UsageError
 from ._lamella import LayerStream, Stack
-from ._meshes import mending, placing
 from ._plates import Sliceable, plate_of
 from ._warning import warn, with_arguments
 
@@ -27,7 +26,6 @@ R = TypeVar("R")
 DEFAULT_LAYER_HEIGHT = 0.1
 DEFAULT_CUSP = 0.05
 LAST = 2**64 - 1  # an end above all layers
-PLACES = ("bottom", "middle", "top")
 
 
 class Engine(NamedTuple):
@@ -47,9 +45,56 @@ def engines() -> List[Engine]:
     return [Engine(*row) for row in _lamella.engines()]
 
 
+def _index_range(name: str, value: Any) -> Tuple[int, int]:
+    def one(name: str, value: Any) -> Optional[int]:
+        return check.optional(check.whole, name, value)
+
+    first, end = check.pair(name, value, "two whole numbers (first, end)", one)
+    return check.whole(name, first), LAST if end is None else end
+
+
+def _heights(name: str, values: npt.ArrayLike) -> npt.NDArray[np.float64]:
+    array = check.array(name, values, "a list of numbers")
+    if array.ndim == 0:
+        array = array.reshape(1)
+    if array.ndim != 1:
+        raise UsageError(f"{name}: expected a list of numbers, found an array of the shape {array.shape}")
+    if len(array) == 0:
+        raise UsageError(f"{name}: expected a list of numbers, found an empty one")
+    heights = check.finite(name, array.astype(np.float64))
+    fallen = np.flatnonzero(np.diff(heights) <= 0)
+    if len(fallen):
+        before, after = heights[fallen[0] : fallen[0] + 2]
+        raise UsageError(f"{name}: {after:g} is not above the one before it, {before:g}; the list must ascend")
+    return heights
+
+
+RANGES = "ranges, each of three numbers (from, to, layer_height)"
+
+
+def _ranges(name: str, values: Any) -> Tuple[Tuple[float, ...], ...]:
+    def one(name: str, value: Any) -> Tuple[float, ...]:
+        return check.several(name, value, 3, RANGES, check.number)
+
+    return check.several(name, values, None, RANGES, one)
+
+
+def _pair_of(words: str, each: Callable[[str, Any], float]) -> Callable[[str, Any], Tuple[float, float]]:
+    return lambda name, value: check.pair(name, value, f"two numbers {words}", each)
+
+
+# Types of arguments, each with its check.
+Heights = Annotated[npt.ArrayLike, _heights]
+HeightRanges = Annotated[Union[Sequence[Tuple[float, float, float]], npt.NDArray[Any]], _ranges]
+SmallestAndLargest = Annotated[Tuple[float, float], _pair_of("(smallest, largest)", check.positive)]
+HeightRange = Annotated[Tuple[float, float], _pair_of("(from, to)", check.number)]
+IndexRange = Annotated[Tuple[int, Optional[int]], _index_range]
+EngineName = Annotated[str, lambda name, value: check.choice(name, value, [known.name for known in engines()])]
+
+
 def _with_the_parameters_of(source: Callable[P, object]) -> Callable[[Callable[[Dict[str, Any]], R]], Callable[P, R]]:
     """Gives a function the parameters of `source`; it gets them as a dict."""
-    parameters = inspect.signature(source)
+    parameters = inspect.signature(getattr(source, "__wrapped__"))
 
     def give(function: Callable[[Dict[str, Any]], R]) -> Callable[P, R]:
         @functools.wraps(function)
@@ -64,38 +109,38 @@ def _with_the_parameters_of(source: Callable[P, object]) -> Callable[[Callable[[
         returned = inspect.signature(function).return_annotation
         setattr(call, "__signature__", parameters.replace(return_annotation=returned))
         setattr(call, "__annotations__", {**source.__annotations__, "return": returned})
-        return check.suggesting(call)
+        return check.arguments(call)
 
     return give
 
 
-@check.suggesting
+@check.arguments
 def slice(
     part: Sliceable,
-    layer_height: Optional[float] = None,
+    layer_height: Optional[Positive] = None,
     *,
-    z: Optional[npt.ArrayLike] = None,
-    offsets: Optional[npt.ArrayLike] = None,
-    heights: Union[None, Sequence[Tuple[float, float, float]], npt.NDArray[Any]] = None,
-    adaptive: Optional[Tuple[float, float]] = None,
-    cusp: Optional[float] = None,
-    first_layer_height: Optional[float] = None,
+    z: Optional[Heights] = None,
+    offsets: Optional[Heights] = None,
+    heights: Optional[HeightRanges] = None,
+    adaptive: Optional[SmallestAndLargest] = None,
+    cusp: Optional[Positive] = None,
+    first_layer_height: Optional[Positive] = None,
     at: CutAt = "middle",
-    z_range: Optional[Tuple[float, float]] = None,
-    layers: Optional[Tuple[int, Optional[int]]] = None,
-    snap: float = 0,
-    direction: Vector = (0, 0, 1),
-    transform: Optional[npt.ArrayLike] = None,
-    unit_mm: Optional[float] = None,
-    weld_tolerance: Optional[float] = None,
+    z_range: Optional[HeightRange] = None,
+    layers: Optional[IndexRange] = None,
+    snap: Distance = 0,
+    direction: Coordinates = (0, 0, 1),
+    transform: Optional[Matrix] = None,
+    unit_mm: Optional[Positive] = None,
+    weld_tolerance: Optional[Positive] = None,
     drop_duplicates: bool = False,
     orient: bool = False,
-    close_gaps: Optional[float] = None,
+    close_gaps: Optional[Positive] = None,
     fill: Optional[FillRule] = None,
-    engine: str = "sweep",
+    engine: EngineName = "sweep",
     strict: bool = False,
     max_memory: int = 0,
-    threads: int = 0,
+    threads: Threads = 0,
     progress: Optional[Progress] = None,
 ) -> Stack:
     """Cuts a mesh into layers of closed contours.
@@ -184,76 +229,39 @@ Prepared = Tuple[_lamella.Plate, _lamella.Plan, str, int, Optional[Progress]]
 def _prepared(given: Dict[str, Any]) -> Prepared:
     """Returns the plate, the plan by which it is cut, the engine, and the arguments of the execution."""
     _check_conflicts(given)
-    checked = {name: of_value(name, given[name]) for name, of_value in CHECKS.items()}
-    threads, progress, max_memory, strict = (checked[name] for name in ("threads", "progress", "max_memory", "strict"))
-    whole = placing(given["direction"], given["transform"])
-    repairs = mending(given["weld_tolerance"], given["drop_duplicates"], given["orient"])
-    plate = plate_of(
-        "part", given["part"], given["unit_mm"], whole, repairs,
-        strict=strict, max_memory=max_memory, threads=threads, progress=progress,
-    )  # fmt: skip
+    execution: Tuple[int, Optional[Progress]] = (given["threads"], given["progress"])
+    strict, max_memory = given["strict"], given["max_memory"]
+    where = (given["direction"], given["transform"])
+    repairs = (given["weld_tolerance"], given["drop_duplicates"], given["orient"])
+    plate = plate_of("part", given["part"], given["unit_mm"], where, repairs, strict, max_memory, *execution)
+    selection = (given["at"], given["z_range"], given["layers"], given["snap"])
     plan = _lamella.plan(
-        plate, _cut_of(checked, plate), checked["at"], checked["z_range"], checked["layers"], checked["snap"],
-        checked["close_gaps"], checked["fill"] or "none", max_memory, threads, progress,
-    )  # fmt: skip
-    doubts = _named(plate, _lamella.near_faces(plate, plan, threads, progress))
+        plate, _cut_of(given, plate), *selection, given["close_gaps"], given["fill"] or "none", max_memory, *execution
+    )
+    doubts = _named(plate, _lamella.near_faces(plate, plan, *execution))
     if strict and doubts:
         raise DefectError(with_arguments(doubts[0]))
     warn(doubts)
-    return plate, plan, checked["engine"], threads, progress
+    return (plate, plan, given["engine"], *execution)
 
 
 Cut = Union[_lamella.UniformLayers, _lamella.ListedPlanes, _lamella.HeightRanges, _lamella.AdaptiveLayers]
 
 
-def _cut_of(checked: Dict[str, Any], plate: _lamella.Plate) -> Cut:
-    height = DEFAULT_LAYER_HEIGHT if checked["layer_height"] is None else checked["layer_height"]
-    if checked["offsets"] is not None:
-        return _lamella.ListedPlanes(checked["offsets"] + plate.bottom)
-    if checked["z"] is not None:
-        return _lamella.ListedPlanes(checked["z"])
-    if checked["adaptive"] is not None:
-        lowest, highest = checked["adaptive"]
-        return _lamella.AdaptiveLayers(lowest, highest, DEFAULT_CUSP if checked["cusp"] is None else checked["cusp"])
-    if checked["heights"] is not None:
-        return _lamella.HeightRanges(checked["heights"], height)
-    return _lamella.UniformLayers(height, checked["first_layer_height"])
-
-
-def _index_range(name: str, value: Any) -> Tuple[int, int]:
-    def one(name: str, value: Any) -> Optional[int]:
-        return check.optional(check.whole, name, value)
-
-    first, end = check.pair(name, value, "two whole numbers (first, end)", one)
-    return check.whole(name, first), LAST if end is None else end
-
-
-def _heights(name: str, values: npt.ArrayLike) -> npt.NDArray[np.float64]:
-    array = check.array(name, values, "a list of numbers")
-    if array.ndim == 0:
-        array = array.reshape(1)
-    if array.ndim != 1:
-        raise UsageError(f"{name}: expected a list of numbers, found an array of the shape {array.shape}")
-    if len(array) == 0:
-        raise UsageError(f"{name}: expected a list of numbers, found an empty one")
-    heights = check.finite(name, array.astype(np.float64))
-    fallen = np.flatnonzero(np.diff(heights) <= 0)
-    if len(fallen):
-        before, after = heights[fallen[0] : fallen[0] + 2]
-        raise UsageError(f"{name}: {after:g} is not above the one before it, {before:g}; the list must ascend")
-    return heights
-
-
-def _ranges(name: str, values: Any) -> Tuple[Tuple[float, ...], ...]:
-    expected = "ranges, each of three numbers (from, to, layer_height)"
-
-    def one(name: str, value: Any) -> Tuple[float, ...]:
-        return check.several(name, value, 3, expected, check.number)
-
-    found = check.several(name, values, None, expected, one)
-    if not found:
-        raise UsageError(f"{name}: expected {expected}, found none")
-    return found
+def _cut_of(given: Dict[str, Any], plate: _lamella.Plate) -> Cut:
+    height = DEFAULT_LAYER_HEIGHT if given["layer_height"] is None else given["layer_height"]
+    if given["offsets"] is not None:
+        return _lamella.ListedPlanes(given["offsets"] + plate.bottom)
+    if given["z"] is not None:
+        return _lamella.ListedPlanes(given["z"])
+    if given["adaptive"] is not None:
+        lowest, highest = given["adaptive"]
+        return _lamella.AdaptiveLayers(lowest, highest, DEFAULT_CUSP if given["cusp"] is None else given["cusp"])
+    if given["heights"] is not None:
+        if not given["heights"]:
+            raise UsageError(f"heights: expected {RANGES}, found none")
+        return _lamella.HeightRanges(given["heights"], height)
+    return _lamella.UniformLayers(height, given["first_layer_height"])
 
 
 def _check_conflicts(values: Dict[str, Any]) -> None:
@@ -267,34 +275,3 @@ def _check_conflicts(values: Dict[str, Any]) -> None:
         raise UsageError(f"{given[0]} and first_layer_height contradict each other: each says where to cut")
     if values["cusp"] is not None and values["adaptive"] is None:
         raise UsageError("cusp goes with adaptive layers only")
-
-
-def _if_given(check_of_value: Callable[..., Any], *more: Any) -> Callable[[str, Any], Any]:
-    return lambda name, value: check.optional(check_of_value, name, value, *more)
-
-
-def _pair(expected: str, each: Callable[[str, Any], float]) -> Callable[[str, Any], Tuple[float, float]]:
-    return lambda name, value: check.pair(name, value, expected, each)
-
-
-# How the arguments of `slice` are checked, in this order; placing, mending and the part have functions of their own.
-CHECKS: Dict[str, Callable[[str, Any], Any]] = {
-    "engine": lambda name, value: check.choice(name, value, [known.name for known in engines()]),
-    "threads": lambda name, value: check.thread_count(value),
-    "progress": lambda name, value: check.listener(value),
-    "strict": check.flag,
-    "max_memory": check.whole,
-    "offsets": _if_given(_heights),
-    "z": _if_given(_heights),
-    "heights": _if_given(_ranges),
-    "adaptive": _if_given(_pair("two numbers (smallest, largest)", check.positive)),
-    "cusp": _if_given(check.positive),
-    "layer_height": _if_given(check.positive),
-    "first_layer_height": _if_given(check.positive),
-    "at": lambda name, value: check.choice(name, value, PLACES),
-    "z_range": _if_given(_pair("two numbers (from, to)", check.number)),
-    "layers": _if_given(_index_range),
-    "snap": check.distance,
-    "close_gaps": _if_given(check.positive),
-    "fill": _if_given(check.choice, FILL_RULES),
-}

@@ -57,10 +57,10 @@ def test_other_threads_go_on_while_slicing(sheet):
 def test_other_threads_go_on_while_a_mesh_is_placed(placed_by):
     prepared = """
 import numpy as np
-from lamella._meshes import placed, placing
+from lamella._meshes import placed
 mesh = lamella.Mesh([(0, 0, 0), (1, 0, 0), (0, 1, 1)], [(0, 1, 2)])
 """
-    assert_lets_other_threads_go_on(prepared, f"placed(mesh, placing({placed_by}), 1)")
+    assert_lets_other_threads_go_on(prepared, f"placed(mesh, ({placed_by}), 1)")
 
 
 def test_two_threads_slice_side_by_side(sheet):
