@@ -14,16 +14,11 @@
 
 #include <algorithm>
 #include <cassert>
-#include <cstddef>
 #include <cstdint>
-#include <functional>
-#include <limits>
 #include <map>
 #include <span>
 #include <string>
 #include <string_view>
-#include <type_traits>
-#include <utility>
 #include <variant>
 #include <vector>
 
@@ -31,8 +26,8 @@ namespace lamella::app {
 namespace {
 
 constexpr std::string_view parameters_key = "parameters";
-constexpr std::string_view contours_key = "contours"; ///< of supports, too
-constexpr std::string_view hatch_key = "hatch";       ///< of skins and supports, too
+constexpr std::string_view contours_key = "contours"; ///< of supports
+constexpr std::string_view hatch_key = "hatch";       ///< of skins and supports
 
 // ------------------------------------------------------------------------------------------------ read
 
@@ -60,280 +55,126 @@ std::string meant(std::string_view word, const std::vector<std::string>& candida
                         : fmt::format("; did you mean {}?", near);
 }
 
-// Values by their type.
+/// Where values are, by their paths.
+using Locations = std::map<std::string, std::string>;
 
-void take(const TomlValue& value, const std::string& name, double& into) {
-    if (const auto* number = value.as<double>())
-        into = *number + 0.0; // turns -0 into 0, as it is written in files
-    else if (const auto* whole = value.as<std::int64_t>())
-        into = static_cast<double>(*whole);
-    else
-        refuse_value(value, name, "a number");
-}
-
-template <class Count>
-void take_count(const TomlValue& value, const std::string& name, Count& into) {
-    const auto* const whole = value.as<std::int64_t>();
-    if (whole == nullptr || *whole < 0 ||
-        static_cast<std::uint64_t>(*whole) > std::numeric_limits<Count>::max())
-        refuse_value(value, name,
-                     fmt::format("a whole number, 0 or more{}",
-                                 value.as<double>() != nullptr ? ", written without a point" : ""));
-    into = static_cast<Count>(*whole);
-}
-void take(const TomlValue& value, const std::string& name, std::uint32_t& into) {
-    take_count(value, name, into);
-}
-void take(const TomlValue& value, const std::string& name, std::uint64_t& into) {
-    take_count(value, name, into);
-}
-
-void take(const TomlValue& value, const std::string& name, bool& into) {
-    const auto* const flag = value.as<bool>();
-    if (flag == nullptr)
-        refuse_value(value, name, "true or false");
-    into = *flag;
-}
-
-template <class Choice>
-void take(const TomlValue& value, const std::string& name, Choice& into) {
-    const NamedValues<Choice> known = named_values(Choice{});
-    const auto* const text = value.as<std::string>();
-    for (const Choice one : known.values)
-        if (text != nullptr && *text == known.name(one)) {
-            into = one;
-            return;
-        }
-    const std::vector<std::string> names = known.names();
-    const std::string near = text == nullptr ? "" : nearest(*text, names);
-    refuse_value(value, name,
-                 fmt::format("one of {}{}", fmt::join(names, ", "),
-                             near.empty() ? "" : fmt::format("; did you mean {}?", near)));
-}
-
-const TomlTable& table_of(const TomlValue& value, const std::string& name) {
-    const auto* const table = value.as<TomlTable>();
-    if (table == nullptr)
-        refuse_value(value, name, fmt::format("a table: [{}]", name));
-    return *table;
-}
-
-class StrategyReading {
+/// A value of a TOML file. Notes the locations of all values that are read.
+class FileValue : public StrategyValue {
   public:
-    ScanStrategy strategy;
+    FileValue(const TomlValue& value, Locations& locations) : value_(value), locations_(locations) {}
 
-    void read(const TomlTable& file) {
-        read_fields("", file, strategy, strategy_fields(),
-                    {{"contours",
-                      [&](const TomlValue& value) {
-                          read_contours("contours", value, strategy.contours);
-                      }},
-                     {"hatch",
-                      [&](const TomlValue& value) {
-                          read_hatch("hatch", value, strategy.hatch);
-                      }},
-                     {"upskin",
-                      [&](const TomlValue& value) {
-                          read_skin("upskin", value, strategy.upskin);
-                      }},
-                     {"downskin",
-                      [&](const TomlValue& value) {
-                          read_skin("downskin", value, strategy.downskin);
-                      }},
-                     {"support",
-                      [&](const TomlValue& value) {
-                          read_support(value);
-                      }},
-                     {"parameters", [&](const TomlValue& value) {
-                          read_sets(value);
-                      }}});
-        resolve("contours", strategy.contours.parameters);
-        resolve("hatch", strategy.hatch.parameters);
-        resolve("upskin.hatch", strategy.upskin.hatch.parameters);
-        resolve("downskin.hatch", strategy.downskin.hatch.parameters);
-        resolve("support.contours", strategy.support.contours.parameters);
-        resolve("support.hatch", strategy.support.hatch.parameters);
-        check_use();
-        check_ranges();
+    void each(const std::string& name, const Visit& visit) const override {
+        const auto* const table = as<TomlTable>(name);
+        if (table == nullptr)
+            refuse_value(value_, name, fmt::format("a table: [{}]", name));
+        for (const TomlEntry& entry : *table)
+            visit(entry.key, FileValue(entry.value, locations_));
+    }
+
+    double number(const std::string& name) const override {
+        if (const auto* number = as<double>(name))
+            return *number + 0.0; // turns -0 into 0, as it is written in files
+        if (const auto* whole = as<std::int64_t>(name))
+            return static_cast<double>(*whole);
+        refuse_value(value_, name, "a number");
+    }
+
+    std::uint64_t count(const std::string& name, std::uint64_t most) const override {
+        const auto* const whole = as<std::int64_t>(name);
+        if (whole != nullptr && *whole >= 0 && static_cast<std::uint64_t>(*whole) <= most)
+            return static_cast<std::uint64_t>(*whole);
+        refuse_value(value_, name,
+                     fmt::format("a whole number, 0 or more{}",
+                                 value_.as<double>() != nullptr ? ", written without a point" : ""));
+    }
+
+    bool flag(const std::string& name) const override {
+        if (const auto* const flag = as<bool>(name))
+            return *flag;
+        refuse_value(value_, name, "true or false");
+    }
+
+    std::string choice(const std::string& name, const std::vector<std::string>& names) const override {
+        const auto* const text = as<std::string>(name);
+        if (text != nullptr && std::find(names.begin(), names.end(), *text) != names.end())
+            return *text;
+        refuse_value(value_, name,
+                     fmt::format("one of {}{}", fmt::join(names, ", "),
+                                 text == nullptr ? "" : did_you_mean(*text, names)));
+    }
+
+    std::string set_name(const std::string& name) const override {
+        const auto* const text = as<std::string>(name);
+        if (text == nullptr || text->empty())
+            refuse_value(value_, name, "the name of a parameter set");
+        return *text;
+    }
+
+    [[noreturn]] void refuse_key(const std::string& name, const std::string& key,
+                                 const std::vector<std::string>& known) const override {
+        refuse_toml(value_.location,
+                    fmt::format("{} has no \"{}\"{}", name.empty() ? "a strategy" : fmt::format("[{}]", name),
+                                excerpt(key), meant(key, known)));
+    }
+
+    [[noreturn]] void refuse_set(const std::string& name, const std::string& set,
+                                 const std::vector<std::string>& known) const override {
+        refuse_toml(locations_.at(name),
+                    fmt::format("{} is \"{}\", but there is no [{}.{}]{}", name, excerpt(set), parameters_key,
+                                excerpt(set), meant(set, known)));
+    }
+
+    [[noreturn]] void refuse_unused(const std::string& set,
+                                    const std::vector<std::string>& used) const override {
+        const std::string name = fmt::format("{}.{}", parameters_key, set);
+        refuse_toml(locations_.at(name),
+                    fmt::format("[{}] is used nowhere{}", excerpt(name), meant(set, used)));
     }
 
   private:
-    using Others = std::vector<std::pair<std::string, std::function<void(const TomlValue&)>>>;
-
-    /// Location of a value in the file, and its name there.
-    struct Origin {
-        std::string location;
-        std::string name;
-    };
-    struct Set {
-        ParameterSet parameters;
-        Origin origin; ///< without a location if it is not in the file
-        std::map<std::string, Origin> fields;
-        bool used = false;
-    };
-
-    /// Reads the fields of a rule, and other tables in it. `path` is "" or the name of the table and a dot.
-    template <class Rule>
-    void read_fields(const std::string& path, const TomlTable& table, Rule& rule,
-                     std::span<const StrategyField<Rule>> fields, const Others& others) {
-        for (const auto& entry : table) {
-            const std::string& key = entry.key;
-            const TomlValue& value = entry.value;
-            const std::string name = path + key;
-            const auto is_it = [&](const auto& one) {
-                return one.name == key;
-            };
-            const auto other =
-                std::find_if(others.begin(), others.end(), [&](const auto& one) { return one.first == key; });
-            origins_[name] = {value.location, name};
-            if (const auto field = std::find_if(fields.begin(), fields.end(), is_it); field != fields.end())
-                std::visit([&](const auto member) { take(value, name, rule.*member); }, field->member);
-            else if (other != others.end())
-                other->second(value);
-            else
-                refuse_key(path, key, value, fields, others);
-        }
+    template <class Kind>
+    const Kind* as(const std::string& name) const {
+        locations_[name] = value_.location;
+        return value_.as<Kind>();
     }
 
-    template <class Rule>
-    [[noreturn]] static void refuse_key(const std::string& path, const std::string& key,
-                                        const TomlValue& value, std::span<const StrategyField<Rule>> fields,
-                                        const Others& others) {
-        std::vector<std::string> known;
-        for (const StrategyField<Rule>& field : fields)
-            known.emplace_back(field.name);
-        for (const auto& [name, read] : others)
-            known.push_back(name);
-        refuse_toml(
-            value.location,
-            fmt::format("{} has no \"{}\"{}",
-                        path.empty() ? "a strategy" : fmt::format("[{}]", path.substr(0, path.size() - 1)),
-                        excerpt(key), meant(key, known)));
-    }
-
-    /// Returns a reader of the parameter set that a rule names.
-    static std::pair<std::string, std::function<void(const TomlValue&)>> set_name(const std::string& path,
-                                                                                  ParameterSet& of_rule) {
-        return {std::string(parameters_key), [path, &of_rule](const TomlValue& value) {
-                    const std::string name = fmt::format("{}.{}", path, parameters_key);
-                    const auto* const text = value.as<std::string>();
-                    if (text == nullptr || text->empty())
-                        refuse_value(value, name, "the name of a parameter set");
-                    of_rule.name = *text;
-                }};
-    }
-
-    void read_contours(const std::string& path, const TomlValue& value, ContourRule& rule) {
-        read_fields(path + ".", table_of(value, path), rule, contour_fields(),
-                    {set_name(path, rule.parameters)});
-    }
-
-    void read_hatch(const std::string& path, const TomlValue& value, HatchRule& rule) {
-        read_fields(path + ".", table_of(value, path), rule, hatch_fields(),
-                    {set_name(path, rule.parameters)});
-    }
-
-    void read_skin(const std::string& path, const TomlValue& value, SkinRule& rule) {
-        const std::string hatch = fmt::format("{}.{}", path, hatch_key);
-        read_fields(path + ".", table_of(value, path), rule, skin_fields(),
-                    {{std::string(hatch_key), [&](const TomlValue& inner) {
-                          read_hatch(hatch, inner, rule.hatch);
-                      }}});
-    }
-
-    void read_support(const TomlValue& value) {
-        SupportRule& rule = strategy.support;
-        read_fields("support.", table_of(value, "support"), rule,
-                    std::span<const StrategyField<SupportRule>>(), // it has only tables
-                    {{std::string(contours_key),
-                      [&](const TomlValue& inner) {
-                          read_contours("support.contours", inner, rule.contours);
-                      }},
-                     {std::string(hatch_key), [&](const TomlValue& inner) {
-                          read_hatch("support.hatch", inner, rule.hatch);
-                      }}});
-    }
-
-    void read_sets(const TomlValue& value) {
-        for (const auto& [name, inner] : table_of(value, std::string(parameters_key))) {
-            const std::string path = fmt::format("{}.{}", parameters_key, name);
-            Set& set = sets_.try_emplace(name, named(name)).first->second;
-            set.origin = {inner.location, path};
-            read_fields(path + ".", table_of(inner, path), set.parameters, parameter_fields(), {});
-            for (const auto& [key, unused] : *inner.as<TomlTable>())
-                set.fields[key] = origins_[fmt::format("{}.{}", path, key)];
-        }
-    }
-
-    static Set named(const std::string& name) {
-        Set set;
-        set.parameters.name = name;
-        return set;
-    }
-
-    static std::map<std::string, Set> preset_sets() {
-        const ScanStrategy preset;
-        std::map<std::string, Set> sets;
-        for (const ParameterSet& one : parameter_sets(preset))
-            sets.try_emplace(one.name).first->second.parameters = one;
-        return sets;
-    }
-
-    void resolve(const std::string& rule, ParameterSet& parameters) {
-        const auto found = sets_.find(parameters.name);
-        if (found == sets_.end()) {
-            std::vector<std::string> names;
-            for (const auto& [name, set] : sets_)
-                names.push_back(name);
-            const std::string key = fmt::format("{}.{}", rule, parameters_key);
-            refuse_toml(origins_.at(key).location,
-                        fmt::format("{} is \"{}\", but there is no [{}.{}]{}", key, excerpt(parameters.name),
-                                    parameters_key, excerpt(parameters.name), meant(parameters.name, names)));
-        }
-        Set& set = found->second;
-        set.used = true;
-        parameters = set.parameters;
-        for (const auto& [key, origin] : set.fields)
-            origins_[fmt::format("{}.{}", rule, key)] = origin;
-    }
-
-    /// Throws for an unused parameter set, because its name is probably mistyped and its values would have no
-    /// effect.
-    void check_use() const {
-        std::vector<std::string> used;
-        for (const auto& [name, set] : sets_)
-            if (set.used)
-                used.push_back(name);
-        for (const auto& [name, set] : sets_)
-            if (!set.used && !set.origin.location.empty())
-                refuse_toml(set.origin.location, fmt::format("[{}] is used nowhere{}",
-                                                             excerpt(set.origin.name), meant(name, used)));
-    }
-
-    /// Checks the strategy. Adds to the library's error the location of the field that it names or, if the
-    /// file does not have the field, that of its table.
-    void check_ranges() const {
-        try {
-            check_strategy(strategy);
-        } catch (const Error& error) {
-            std::string text = error.what();
-            std::string field = text.substr(1, text.find('`', 1) - 1);
-            auto found = origins_.find(field);
-            for (std::string path = field; found == origins_.end(); found = origins_.find(path)) {
-                assert(path.find('.') != std::string::npos); // the defaults are valid
-                path.resize(path.rfind('.'));
-            }
-            if (found->first == field)
-                field = found->second.name;
-            text = field + text.substr(text.find('`', 1) + 1);
-            std::erase(text, '`');
-            refuse_toml(found->second.location, text);
-        }
-    }
-
-    std::map<std::string, Set> sets_ = preset_sets();
-    std::map<std::string, Origin> origins_; ///< by the path by which the library names the field
+    const TomlValue& value_;
+    Locations& locations_;
 };
+
+/// Returns the name in the file of a field that the library names: that of a parameter set if it is there.
+std::string name_in_file(const std::string& field, const ScanStrategy& strategy, const Locations& locations) {
+    std::string name = field;
+    for_each_set(strategy, [&](const std::string& rule, const ParameterSet& set) {
+        if (!field.starts_with(rule + "."))
+            return;
+        const std::string of_set =
+            fmt::format("{}.{}.{}", parameters_key, set.name, field.substr(rule.size() + 1));
+        if (locations.contains(of_set))
+            name = of_set;
+    });
+    return name;
+}
+
+/// Checks the strategy. Adds to the library's error the location of the field that it names or, if the file
+/// does not have the field, that of its table.
+void check_ranges(const ScanStrategy& strategy, const Locations& locations) {
+    try {
+        check_strategy(strategy);
+    } catch (const Error& error) {
+        std::string text = error.what();
+        const std::string field = text.substr(1, text.find('`', 1) - 1);
+        const std::string name = name_in_file(field, strategy, locations);
+        std::string path = name;
+        while (!locations.contains(path)) {
+            assert(path.find('.') != std::string::npos); // the defaults are valid
+            path.resize(path.rfind('.'));
+        }
+        text = name + text.substr(text.find('`', 1) + 1);
+        std::erase(text, '`');
+        refuse_toml(locations.at(path), text);
+    }
+}
 
 // ----------------------------------------------------------------------------------------------- write
 
@@ -384,9 +225,11 @@ Json skin_json(const SkinRule& rule) {
 } // namespace
 
 ScanStrategy read_strategy(const std::string& path) {
-    StrategyReading reading;
-    reading.read(read_toml(path));
-    return reading.strategy;
+    Locations locations;
+    const TomlValue file{{}, read_toml(path)};
+    ScanStrategy strategy = strategy_of(FileValue(file, locations));
+    check_ranges(strategy, locations);
+    return strategy;
 }
 
 Json strategy_json(const ScanStrategy& strategy) {

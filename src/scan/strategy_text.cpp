@@ -96,24 +96,21 @@ std::string skin_text(const std::string& name, const SkinRule& rule, std::string
 
 std::vector<ParameterSet> parameter_sets(const ScanStrategy& strategy) {
     std::vector<ParameterSet> sets;
-    for (const ParameterSet* one :
-         {&strategy.contours.parameters, &strategy.hatch.parameters, &strategy.upskin.hatch.parameters,
-          &strategy.downskin.hatch.parameters, &strategy.support.contours.parameters,
-          &strategy.support.hatch.parameters}) {
-        if (one->name.empty())
+    for_each_set(strategy, [&](const char* /*rule*/, const ParameterSet& one) {
+        if (one.name.empty())
             throw Error(ErrorKind::usage,
                         "a set of parameters has no name, and a file needs one; give it a name");
         const auto same = std::find_if(sets.begin(), sets.end(),
-                                       [&](const ParameterSet& set) { return set.name == one->name; });
+                                       [&](const ParameterSet& set) { return set.name == one.name; });
         if (same == sets.end())
-            sets.push_back(*one);
-        else if (!(*same == *one))
+            sets.push_back(one);
+        else if (!(*same == one))
             throw Error(
                 ErrorKind::usage,
                 fmt::format("there are several sets of parameters with the name \"{}\", and they differ; "
                             "a file has one of each name; give the others other names",
-                            excerpt(one->name)));
-    }
+                            excerpt(one.name)));
+    });
     return sets;
 }
 

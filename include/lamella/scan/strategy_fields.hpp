@@ -5,10 +5,14 @@
 
 #include "lamella/scan/strategy.hpp"
 
+#include <algorithm>
 #include <cstdint>
+#include <functional>
+#include <limits>
 #include <span>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <variant>
 #include <vector>
 
@@ -54,6 +58,70 @@ struct NamedValues {
 [[nodiscard]] NamedValues<StartPoint> named_values(StartPoint) noexcept;
 [[nodiscard]] NamedValues<ContourOrder> named_values(ContourOrder) noexcept;
 [[nodiscard]] NamedValues<ThinWalls> named_values(ThinWalls) noexcept;
+
+/// Calls visit(path, set) for the parameter set of each rule, in the order of strategy files. The path is
+/// that of the rule, such as "upskin.hatch".
+template <class Strategy, class Visit>
+void for_each_set(Strategy& strategy, const Visit& visit) {
+    visit("contours", strategy.contours.parameters);
+    visit("hatch", strategy.hatch.parameters);
+    visit("upskin.hatch", strategy.upskin.hatch.parameters);
+    visit("downskin.hatch", strategy.downskin.hatch.parameters);
+    visit("support.contours", strategy.support.contours.parameters);
+    visit("support.hatch", strategy.support.hatch.parameters);
+}
+
+/// A value from which a strategy or a field of it is read: in a TOML file, a dict of Python. `name` is its
+/// path, such as "upskin.hatch.distance", and "" for the whole. All functions throw an error in the words of
+/// the format, with the location, if the value is another one than they return.
+class StrategyValue {
+  public:
+    StrategyValue() = default;
+    StrategyValue(const StrategyValue&) = delete;
+    StrategyValue& operator=(const StrategyValue&) = delete;
+    virtual ~StrategyValue() = default;
+
+    using Visit = std::function<void(const std::string& key, const StrategyValue& value)>;
+    /// Calls `visit` for each value of a table.
+    virtual void each(const std::string& name, const Visit& visit) const = 0;
+    [[nodiscard]] virtual double number(const std::string& name) const = 0;
+    [[nodiscard]] virtual std::uint64_t count(const std::string& name, std::uint64_t most) const = 0;
+    [[nodiscard]] virtual bool flag(const std::string& name) const = 0;
+    [[nodiscard]] virtual std::string choice(const std::string& name,
+                                             const std::vector<std::string>& names) const = 0;
+    /// Returns the name of a parameter set, which is not empty.
+    [[nodiscard]] virtual std::string set_name(const std::string& name) const = 0;
+
+    /// Throws for a key that the table `name` cannot have.
+    [[noreturn]] virtual void refuse_key(const std::string& name, const std::string& key,
+                                         const std::vector<std::string>& known) const = 0;
+    /// For the whole: throw for the name of a set that does not exist, and for a set that no rule names.
+    [[noreturn]] virtual void refuse_set(const std::string& name, const std::string& set,
+                                         const std::vector<std::string>& known) const = 0;
+    [[noreturn]] virtual void refuse_unused(const std::string& set,
+                                            const std::vector<std::string>& used) const = 0;
+};
+
+/// Reads a field of any type.
+template <class Value>
+void take(const StrategyValue& value, const std::string& name, Value& into) {
+    if constexpr (std::is_enum_v<Value>) {
+        const NamedValues<Value> known = named_values(Value{});
+        const std::string chosen = value.choice(name, known.names());
+        into = *std::find_if(known.values.begin(), known.values.end(),
+                             [&](Value one) { return known.name(one) == chosen; });
+    } else if constexpr (std::is_same_v<Value, bool>) {
+        into = value.flag(name);
+    } else if constexpr (std::is_integral_v<Value>) {
+        into = static_cast<Value>(value.count(name, std::numeric_limits<Value>::max()));
+    } else {
+        into = value.number(name);
+    }
+}
+
+/// Reads the tables of a strategy. Fields that are absent have their defaults. Ranges are not checked; see
+/// check_strategy. Throws what the functions of the value throw.
+[[nodiscard]] ScanStrategy strategy_of(const StrategyValue& tables);
 
 /// Returns each parameter set of the strategy once, in the order of its rules. Throws Error{usage} if sets of
 /// one name differ, or one has no name.
