@@ -14,7 +14,6 @@ the library, without a copy. Invalid arguments raise a TypeError or a ValueError
 that do not prevent a result cause a lamella.DefectWarning.
 """
 
-from . import _methods
 from ._checks import Comparison, LayerDifference, VectorVerification, Verification, compare, verify, verify_vectors
 from ._errors import (
     CancelledError,

@@ -207,8 +207,10 @@ def arguments(function: Function) -> Function:
                 name_the_file(error, (*given, *keywords.values()))
             raise
 
-    plain = [parameter.replace(annotation=_plain(parameter.annotation, names)) for parameter in parameters.values()]
-    setattr(call, "__signature__", inspect.signature(function).replace(parameters=plain))
+    shown = [parameter.replace(annotation=plain(parameter.annotation, names)) for parameter in parameters.values()]
+    signature = inspect.signature(function)
+    returned = plain(signature.return_annotation, names)
+    setattr(call, "__signature__", signature.replace(parameters=shown, return_annotation=returned))
     return call  # type: ignore[return-value]
 
 
@@ -218,10 +220,30 @@ def construction(cls: Class) -> Class:
     return cls
 
 
+def give_methods(cls: type, source: type) -> None:
+    """Gives a class the functions of another one, which check their arguments. Its own constructor becomes `_make`."""
+    for name, method in vars(source).items():
+        if name == "__init__":
+            setattr(cls, "_make", getattr(cls, "__init__"))
+        if isinstance(method, classmethod):
+            setattr(cls, name, classmethod(arguments(method.__func__)))
+        elif callable(method):
+            takes_keywords = name == "__init__" or not name.startswith("_")
+            setattr(cls, name, arguments(method) if takes_keywords else method)
+    if "__init__" in vars(source):
+        show_signature(cls)
+
+
+def show_signature(cls: type) -> None:
+    """Shows editors the arguments of a class of the extension, which its metaclass hides."""
+    signature = inspect.signature(getattr(cls, "__init__"))
+    setattr(cls, "__signature__", signature.replace(parameters=list(signature.parameters.values())[1:]))
+
+
 def _type_of(annotation: Any, names: Dict[str, Any]) -> Any:
     try:
         return eval(annotation, names) if isinstance(annotation, str) else annotation
-    except NameError:  # a name that is there for type checkers only
+    except (AttributeError, NameError, SyntaxError):  # a name that is there for type checkers only, or part of a text
         return Any
 
 
@@ -239,17 +261,18 @@ def _check_of(kind: Any) -> Optional[Check]:
     return checks.get(kind)
 
 
-def _plain(annotation: Any, names: Dict[str, Any]) -> Any:
+def plain(annotation: Any, names: Dict[str, Any]) -> Any:
     """Returns the text of a type without its checks, as users see it."""
 
-    def plain(found: Match[str]) -> str:
-        kind = names.get(found.group())
-        if get_origin(kind) is not Annotated:
-            return found.group()
-        text = repr(get_args(kind)[0]).replace("typing.", "").replace("<class '", "").replace("'>", "")
-        return text if len(text) < 40 else found.group()
+    def known(found: Match[str]) -> str:
+        kind = _type_of(found.group(), names)
+        if get_origin(kind) is Annotated:
+            text = repr(get_args(kind)[0]).replace("typing.", "").replace("<class '", "").replace("'>", "")
+            if len(text) < 40:
+                return text
+        return found.group().replace("check.", "").lstrip("_")
 
-    return re.sub(r"\w+", plain, annotation) if isinstance(annotation, str) else annotation
+    return re.sub(r"[\w.]+", known, annotation) if isinstance(annotation, str) else annotation
 
 
 def _listed(choices: Sequence[str], last: str) -> str:

@@ -225,7 +225,7 @@ def compare(
     heights.
     """
     one, other = (as_stack(name, layers, threads, progress) for name, layers in (("first", first), ("second", second)))
-    tolerance, planes, cut_apart = _lamella.compare(one, other, tolerance, threads, progress)
+    within, planes, cut_apart = _lamella.compare(one, other, tolerance, threads, progress)
     if cut_apart:
         low, high = one[0], other[0]
         warn(
@@ -244,4 +244,4 @@ def compare(
             differences.append(LayerDifference((a or b).z, math.inf, None, a, b))  # type: ignore[union-attr]
         elif not agree:
             differences.append(LayerDifference(a.z, distance, where if math.isfinite(distance) else None, a, b))
-    return Comparison(not differences, tolerance, len(planes), same, differences)
+    return Comparison(not differences, within, len(planes), same, differences)

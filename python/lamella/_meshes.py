@@ -179,21 +179,6 @@ def _mesh_of_file(name: str, file: Any, *reading: Any) -> Mesh:
     return mesh
 
 
-def arrays_of_mesh(vertices: Any, faces: Any) -> Tuple[npt.NDArray[np.float64], npt.NDArray[np.int64]]:
-    positions = check.shaped("vertices", vertices, (None, 3), "an array of numbers of the shape (n, 3)")
-    expected = "an array of whole numbers of the shape (m, 3)"
-    numbers = check.array("faces", faces, expected, kinds="iu")
-    if numbers.ndim != 2 or numbers.shape[1] != 3:
-        cut = "; faces of more than three corners must be cut into triangles first" if numbers.ndim == 2 else ""
-        raise UsageError(f"faces: expected {expected}, found {check.described(numbers)}{cut}")
-    if numbers.dtype == np.uint64 and (numbers > np.iinfo(np.int64).max).any():
-        row, corner = np.argwhere(numbers > np.iinfo(np.int64).max)[0]
-        raise InputError(
-            f"faces: row {row} names vertex {numbers[row, corner]}, and there are {len(positions)}, counted from 0"
-        )
-    return positions, np.ascontiguousarray(numbers, dtype=np.int64)
-
-
 def _mesh_of_triangles(name: str, corners: npt.NDArray[Any]) -> Mesh:
     """Makes a mesh of triangles without shared vertices: (m, 3, 3)."""
     if corners.ndim != 3 or corners.shape[1:] != (3, 3):

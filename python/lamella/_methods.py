@@ -1,31 +1,33 @@
-"""Methods of the extension's classes that have arguments. As everywhere in the package, arguments are checked in
-Python, and then passed to the extension's method whose name begins with an underscore."""
+"""Methods of the extension's classes that take keywords. The extension takes them from here while it makes its classes, so
+this module and all that it imports do without the extension."""
 
 from __future__ import annotations
 
 import decimal
 import functools
-import inspect
 import numbers
+import os
 import tempfile
 import webbrowser
 from pathlib import Path
-from typing import Annotated, Any, Callable, Dict, Iterable, List, Literal, NamedTuple, Optional, Tuple, TypeVar
+from typing import TYPE_CHECKING, Annotated, Any, Iterable, List, Literal, NamedTuple, Optional, Sequence, Tuple, Union, overload
 
 import numpy as np
 import numpy.typing as npt
 
 from . import _arguments as check
-from . import _lamella
-from ._errors import UsageError
-from ._files import write
+from ._errors import InputError, UsageError
 from ._looking import layer_svg, plot_layer, stack_html
-from ._meshes import arrays_of_mesh
 from ._shapely import contours_of, multi_polygon
-from ._strategies import as_strategy
 from ._warning import parts_lost, warn
 
-T = TypeVar("T")
+if TYPE_CHECKING:
+    from ._lamella import Layer as _Layer
+    from ._lamella import LayerStream as _LayerStream
+    from ._lamella import Mesh as _Mesh
+    from ._lamella import Stack as _Stack
+else:
+    _Layer = _LayerStream = _Mesh = _Stack = object
 
 
 class ContourDefect(NamedTuple):
@@ -41,36 +43,6 @@ class ContourDefect(NamedTuple):
     at: Tuple[float, float]  #: the crossing, or the first point of the contour, in millimetres
 
 
-def _show_signature(cls: type) -> None:
-    """Shows editors the arguments of a class of the extension, which its metaclass hides."""
-    signature = inspect.signature(getattr(cls, "__init__"))
-    setattr(cls, "__signature__", signature.replace(parameters=list(signature.parameters.values())[1:]))
-
-
-def _methods_of(cls: type) -> Callable[[T], T]:
-    """Adds the functions of the decorated class to `cls`. The decorated class has the same name, which errors of Python
-    show."""
-
-    def give(source: T) -> T:
-        for name, method in vars(source).items():
-            if isinstance(method, classmethod):
-                setattr(cls, name, classmethod(check.arguments(method.__func__)))
-            elif callable(method):
-                takes_keywords = name == "__init__" or not name.startswith("_")
-                setattr(cls, name, check.arguments(method) if takes_keywords else method)
-                if name == "__init__":
-                    _show_signature(cls)
-        return source
-
-    return give
-
-
-_make_mesh: Callable[..., None] = _lamella.Mesh.__init__
-_make_layer: Callable[..., None] = _lamella.Layer.__init__
-_make_stack: Callable[..., None] = _lamella.Stack.__init__
-_item: Callable[..., Any] = _lamella.Stack.__getitem__
-
-
 def _window(name: str, bounds: npt.ArrayLike) -> npt.NDArray[np.float64]:
     """Returns the smallest and the largest x and y: (2, 2)."""
     expected = "the smallest and the largest x and y, an array of the shape (2, 2) or (2, 3)"
@@ -83,16 +55,24 @@ def _window(name: str, bounds: npt.ArrayLike) -> npt.NDArray[np.float64]:
     return window
 
 
-@_methods_of(_lamella.Mesh)
-class Mesh(_lamella.Mesh):
+def _arrays_of_mesh(vertices: Any, faces: Any) -> Tuple[npt.NDArray[np.float64], npt.NDArray[np.int64]]:
+    positions = check.shaped("vertices", vertices, (None, 3), "an array of numbers of the shape (n, 3)")
+    expected = "an array of whole numbers of the shape (m, 3)"
+    numbers = check.array("faces", faces, expected, kinds="iu")
+    if numbers.ndim != 2 or numbers.shape[1] != 3:
+        cut = "; faces of more than three corners must be cut into triangles first" if numbers.ndim == 2 else ""
+        raise UsageError(f"faces: expected {expected}, found {check.described(numbers)}{cut}")
+    if numbers.dtype == np.uint64 and (numbers > np.iinfo(np.int64).max).any():
+        row, corner = np.argwhere(numbers > np.iinfo(np.int64).max)[0]
+        raise InputError(
+            f"faces: row {row} names vertex {numbers[row, corner]}, and there are {len(positions)}, counted from 0"
+        )
+    return positions, np.ascontiguousarray(numbers, dtype=np.int64)
+
+
+class Mesh(_Mesh):
     def __init__(self, vertices: npt.ArrayLike, faces: npt.ArrayLike) -> None:
-        _make_mesh(self, *arrays_of_mesh(vertices, faces))
-
-
-def _one_layer(name: str, thing: Any, expected: str = "layers") -> _lamella.Layer:
-    if not isinstance(thing, _lamella.Layer):
-        check.refuse_type(name, expected, thing)
-    return thing
+        self._make(*_arrays_of_mesh(vertices, faces))
 
 
 def _contours(name: str, contours: Any) -> Tuple[npt.NDArray[np.float64], ...]:
@@ -109,7 +89,7 @@ Contours = Annotated[Iterable[npt.ArrayLike], _contours]
 MitreLimit = Annotated[float, functools.partial(check.number, least=1, expected="a number, 1 or more")]
 
 
-def _made_of(made: _lamella.Layer, *layers: _lamella.Layer) -> _lamella.Layer:
+def _made_of(made: _Layer, *layers: _Layer) -> _Layer:
     lost = sum(len(layer.hatches) for layer in layers) - len(made.hatches)
     if lost > 0:
         warn([f"{lost} hatch line{'s' if lost > 1 else ''} left out: the contours that they fill were changed"])
@@ -118,8 +98,7 @@ def _made_of(made: _lamella.Layer, *layers: _lamella.Layer) -> _lamella.Layer:
     return made
 
 
-@_methods_of(_lamella.Layer)
-class Layer(_lamella.Layer):
+class Layer(_Layer):
     def __init__(
         self,
         rings: Contours,
@@ -135,12 +114,12 @@ class Layer(_lamella.Layer):
             raise UsageError(
                 f"z: {z:g} is not possible; a layer is cut between its bottom, {below}, and its top, {above}"
             )
-        _make_layer(self, rings, z, below, above, index, chains)
+        self._make(rings, z, below, above, index, chains)
 
     @classmethod
     def from_shapely(
         cls, geometry: Any, z: float, bottom: Optional[float] = None, top: Optional[float] = None
-    ) -> _lamella.Layer:
+    ) -> _Layer:
         """Returns a layer of a geometry of shapely, in millimetres: polygons become rings, outer ones counter-clockwise
         and holes clockwise; lines become open chains. A DefectWarning counts points, which are left out. `z`, `bottom`
         and `top` as for Layer."""
@@ -148,18 +127,6 @@ class Layer(_lamella.Layer):
         if points:
             warn([f"{points} point{'s' if points > 1 else ''} left out: a layer has rings and chains only"])
         return cls(rings, z, bottom, top, chains=chains)
-
-    def __or__(self, other: Any) -> Any:
-        return self.union(other) if isinstance(other, _lamella.Layer) else NotImplemented
-
-    def __and__(self, other: Any) -> Any:
-        return self.intersection(other) if isinstance(other, _lamella.Layer) else NotImplemented
-
-    def __sub__(self, other: Any) -> Any:
-        return self.difference(other) if isinstance(other, _lamella.Layer) else NotImplemented
-
-    def __xor__(self, other: Any) -> Any:
-        return self.symmetric_difference(other) if isinstance(other, _lamella.Layer) else NotImplemented
 
     def polygons(self) -> List[Tuple[int, List[int]]]:
         """Returns the polygons of the material as pairs (outer, holes): the index of the outer ring, and the list of
@@ -184,11 +151,24 @@ class Layer(_lamella.Layer):
         bodies are united. Open chains are left out. Needs shapely."""
         return multi_polygon(self)
 
-    def filled(self, rule: check.FillRule = "nonzero") -> _lamella.Layer:
+    def filled(self, rule: check.FillRule = "nonzero") -> _Layer:
         """Returns the layer with overlapping bodies united. Material is where the winding number satisfies `rule`:
         "nonzero", "evenodd" or "positive". Rings that do not overlap others keep their points."""
         return _made_of(self._filled(rule), self)
 
+    @overload
+    def offset(
+        self, distance: float, corners: check.Corners = "mitre", *, mitre_limit: float = 2, arc_tolerance: float = 0.001
+    ) -> _Layer: ...
+    @overload
+    def offset(
+        self,
+        distance: Union[Sequence[float], npt.NDArray[Any]],
+        corners: check.Corners = "mitre",
+        *,
+        mitre_limit: float = 2,
+        arc_tolerance: float = 0.001,
+    ) -> List[_Layer]: ...
     def offset(
         self,
         distance: Any,
@@ -239,24 +219,24 @@ class Layer(_lamella.Layer):
         width, height = pixel_mm  # type: ignore[misc]
         return self._image(width, height, box[0, 0], box[1, 1], int(count[0]), int(count[1]), antialias)
 
-    def union(self, other: _lamella.Layer) -> _lamella.Layer:
+    def union(self, other: _Layer) -> _Layer:
         """Returns the union of the material of this layer and `other`. Material is where the winding number is
         positive. Rings that intersect no others keep their points. Heights and open chains are those of this layer."""
-        return _made_of(self._union(_one_layer("other", other, "a layer")), self, other)
+        return _made_of(self._union(other), self, other)
 
-    def intersection(self, other: _lamella.Layer) -> _lamella.Layer:
+    def intersection(self, other: _Layer) -> _Layer:
         """Returns the intersection of the material of this layer and `other`; see `union`."""
-        return _made_of(self._intersection(_one_layer("other", other, "a layer")), self, other)
+        return _made_of(self._intersection(other), self, other)
 
-    def difference(self, other: _lamella.Layer) -> _lamella.Layer:
+    def difference(self, other: _Layer) -> _Layer:
         """Returns the layer without the material of `other`; see `union`."""
-        return _made_of(self._difference(_one_layer("other", other, "a layer")), self, other)
+        return _made_of(self._difference(other), self, other)
 
-    def symmetric_difference(self, other: _lamella.Layer) -> _lamella.Layer:
+    def symmetric_difference(self, other: _Layer) -> _Layer:
         """Returns the symmetric difference of the material of this layer and `other`; see `union`."""
-        return _made_of(self._symmetric_difference(_one_layer("other", other, "a layer")), self, other)
+        return _made_of(self._symmetric_difference(other), self, other)
 
-    def simplified(self, tolerance: check.Distance) -> _lamella.Layer:
+    def simplified(self, tolerance: check.Distance) -> _Layer:
         """Returns the layer with fewer points. No contour moves by more than `tolerance` millimetres."""
         return _made_of(self._simplified(tolerance), self)
 
@@ -288,11 +268,10 @@ def _positions(index: Any, count: int) -> npt.NDArray[np.int64]:
     return positions
 
 
-@_methods_of(_lamella.Stack)
-class Stack(_lamella.Stack):
-    def __init__(self, layers: Iterable[_lamella.Layer], label: str = "part") -> None:
-        several = check.several("layers", layers, None, "layers", _one_layer)
-        _make_stack(self, several, check.label("label", label))
+class Stack(_Stack):
+    def __init__(self, layers: Iterable[_Layer], label: str = "part") -> None:
+        several: Tuple[Any, ...] = check.several("layers", layers, None, "layers", lambda name, layer: layer)
+        self._make(several, check.label("label", label))
         if lost := parts_lost(several):
             warn([lost])
 
@@ -300,22 +279,26 @@ class Stack(_lamella.Stack):
         """Writes a page with all layers, as `write` does for a name that ends in .html, to a new folder for temporary
         files, and opens it in the browser. Returns the path of the page, which stays there."""
         path = Path(tempfile.mkdtemp(prefix="lamella-"), "layers.html")
-        write(path, self)
+        warn(f"{path}: {warning}" for warning in self._write_page(os.fsencode(path)))
         if not webbrowser.open(path.as_uri()):
             warn([f"no browser was found to open {path}"], RuntimeWarning)
         return str(path)
 
+    @overload
+    def __getitem__(self, index: Union[int, "np.integer[Any]"]) -> _Layer: ...
+    @overload
+    def __getitem__(self, index: Union[slice, Sequence[int], Sequence[bool], npt.NDArray[Any]]) -> _Stack: ...
     def __getitem__(self, index: Any) -> Any:
         if isinstance(index, list) or getattr(index, "ndim", 0) > 0:
             return self._chosen(_positions(index, len(self)))
-        return _item(self, index)
+        return self._item(index)
 
-    def at(self, z: float) -> _lamella.Layer:
+    def at(self, z: float) -> _Layer:
         """Returns the layer whose material is at the height `z` in millimetres; where one layer ends and the next one
         begins, the upper one. Raises UsageError if there is none."""
         i = int(np.searchsorted(self.bottom, z, side="right")) - 1
         if i >= 0 and z <= self[i].top:
-            return self[i]  # type: ignore[no-any-return]
+            return self[i]
         reach = f"they reach from {self.bottom[0]:g} to {self.top[-1]:g} mm" if len(self) else "the stack is empty"
         raise UsageError(f"z: there is no layer at {z:g} mm; {reach}")
 
@@ -323,8 +306,7 @@ class Stack(_lamella.Stack):
         return stack_html(self)
 
 
-@_methods_of(_lamella.LayerStream)
-class LayerStream(_lamella.LayerStream):
+class LayerStream(_LayerStream):
     def __init__(self) -> None:
         raise TypeError("a lamella.LayerStream is made by lamella.iter_layers")
 
@@ -333,103 +315,6 @@ class LayerStream(_lamella.LayerStream):
         self._close()
 
 
-@_methods_of(_lamella.ScanStrategy)
-class ScanStrategy(_lamella.ScanStrategy):
-    @classmethod
-    def from_toml(cls, source: check.Readable) -> _lamella.ScanStrategy:
-        """Returns the strategy of a TOML file (needs Python 3.11): a path, bytes, a file object, or the text itself, as
-        `to_toml` returns it. A str with an equals sign or a line end is a text. Fields that are absent have their
-        defaults.
-
-        Raises InputError for a file that cannot be read, UsageError for anything that a strategy does not have."""
-        if isinstance(source, str) and any(sign in source for sign in "=\n\r"):
-            source = source.encode()
-        if not check.is_file(source):
-            check.refuse_type("source", "a path, bytes, a binary file, or the text of a TOML file", source)
-        return as_strategy("source", source)
-
-    def to_toml(self) -> str:
-        """Returns the whole strategy as the text of a TOML file, with comments, which `scan` and the program read."""
-        _lamella.check_strategy(self)
-        return _lamella.strategy_text(self)
-
-    def __str__(self) -> str:
-        return _lamella.strategy_text(self)
-
-
-def _attributes(base: type, rule: Any) -> Dict[str, Any]:
-    """Returns the attributes that the class of the package has, without those of derived classes."""
-    return {name: getattr(rule, name) for name, member in vars(base).items() if isinstance(member, property)}
-
-
-def _with_attributes(cls: Any, base: Any, attributes: Dict[str, Any]) -> Any:
-    made = cls.__new__(cls)
-    base.__init__(made)
-    for name, value in attributes.items():
-        setattr(made, name, value)
-    return made
-
-
-def _is_its_attributes(cls: type) -> None:
-    """Makes a class of strategies compare, copy and pickle its objects by their attributes."""
-
-    def __eq__(self: Any, other: object) -> bool:
-        if not isinstance(other, cls):
-            return NotImplemented
-        return _attributes(cls, self) == _attributes(cls, other)
-
-    def __reduce_ex__(self: Any, protocol: int) -> Tuple[Any, ...]:
-        return _with_attributes, (type(self), cls, _attributes(cls, self))
-
-    for name, value in (("__eq__", __eq__), ("__hash__", None), ("__reduce_ex__", __reduce_ex__)):
-        setattr(cls, name, value)
-
-
-def _shows_its_attributes(cls: type) -> None:
-    def __repr__(self: Any) -> str:
-        shown = ", ".join(f"{name}={value!r}" for name, value in _attributes(cls, self).items())
-        return f"{type(self).__name__}({shown})"
-
-    setattr(cls, "__repr__", __repr__)
-
-
-def _is_made_of_its_attributes(cls: type) -> None:
-    """Makes a class of strategies take its attributes as keywords. A ParameterSet also takes another one to copy."""
-    make: Callable[..., None] = getattr(cls, "__init__")
-    defaults = getattr(cls, "__new__")(cls)
-    make(defaults)
-    copies = cls is _lamella.ParameterSet
-    self_of_init = inspect.Parameter("self", inspect.Parameter.POSITIONAL_ONLY)
-    parameters = [self_of_init]
-    if copies:
-        parameters.append(inspect.Parameter("other", inspect.Parameter.POSITIONAL_OR_KEYWORD, default=None))
-    for name, value in _attributes(cls, defaults).items():
-        parameters.append(inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=value))
-    known = [parameter.name for parameter in parameters]
-
-    def __init__(self: Any, *others: Any, **attributes: Any) -> None:
-        if len(others) > copies:
-            raise TypeError(f"{cls.__name__}() takes its attributes as keywords only")
-        other = others[0] if others else attributes.pop("other", None) if copies else None
-        if other is not None and not isinstance(other, cls):
-            check.refuse_type("other", f"a lamella.{cls.__name__}", other)
-        make(self, *(() if other is None else (other,)))
-        for name, value in attributes.items():
-            if name not in known[1:]:
-                raise TypeError(f"{cls.__name__}() got an unexpected keyword argument {name!r}")
-            setattr(self, name, value)
-
-    __init__.__qualname__ = f"{cls.__name__}.__init__"  # the name in its errors
-    setattr(__init__, "__signature__", inspect.Signature(parameters))
-    setattr(cls, "__init__", check.arguments(__init__))
-    _show_signature(cls)
-
-
-_rules: Tuple[type, ...] = (
-    _lamella.ContourRule, _lamella.HatchRule, _lamella.SkinRule, _lamella.SupportRule, _lamella.ScanStrategy,
-)  # fmt: skip
-for _rule in (_lamella.ParameterSet, *_rules):
-    _is_made_of_its_attributes(_rule)
-    _is_its_attributes(_rule)
-for _rule in (*_rules, _lamella.ParameterSet, _lamella.ScanFigures):
-    _shows_its_attributes(_rule)
+def complete(cls: type) -> None:
+    """Gives a class of the extension the methods of the class of this name. Errors of Python show this name."""
+    check.give_methods(cls, globals()[cls.__name__])

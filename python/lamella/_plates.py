@@ -103,7 +103,7 @@ def plate_of(
         return _lamella.plate_of_mesh(mesh, mending, threads, progress)
     if unit_mm is not None:
         raise UsageError("unit_mm: each part of a plate has its own, such as lamella.Part(..., unit_mm=25.4)")
-    on_plate = [one._on_plate(mesh_of(one.mesh, one.unit_mm)) for one in parts]
+    on_plate: List[Any] = [one._on_plate(mesh_of(one.mesh, one.unit_mm)) for one in parts]
     direction, transform = whole
     return _lamella.plate_of_parts(
         on_plate, transform, None if direction == UPWARDS else direction, mending, max_memory, threads, progress

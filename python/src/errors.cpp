@@ -1,7 +1,7 @@
-#include "errors.hpp"
-
 #include "lamella/core/error.hpp"
 #include "lamella/core/printable.hpp"
+
+#include "bindings.hpp"
 
 #include <pybind11/pybind11.h>
 

@@ -1,5 +1,3 @@
-#include "files.hpp"
-
 #include "lamella/contour/normal_form.hpp"
 #include "lamella/core/error.hpp"
 #include "lamella/pipeline/layer_findings.hpp"
@@ -11,14 +9,15 @@
 #include "lamella/write/layer_writer.hpp"
 #include "lamella/write/mesh_writer.hpp"
 
+#include "bindings.hpp"
 #include "gil_release.hpp"
 #include "input.hpp"
-#include "layers.hpp"
 #include "placing.hpp"
 #include "run.hpp"
 #include "shared_layer.hpp"
 #include "source_mesh.hpp"
 #include "source_plate.hpp"
+#include "texts.hpp"
 #include "viewer/viewer_page.hpp"
 
 #include <pybind11/stl.h>
@@ -39,8 +38,6 @@ namespace py = pybind11;
 
 namespace lamella::python {
 namespace {
-
-using StackPointer = std::shared_ptr<Stack>;
 
 bool holds_scan_vectors(const LayerFile& file) {
     return std::any_of(file.parts.begin(), file.parts.end(),
@@ -101,8 +98,8 @@ StackPointer stack_of(const LayerFile& file, const Execution& execution) {
 }
 
 /// Returns the layers of the file, and its warnings.
-std::pair<StackPointer, py::list> read_stack(const py::object& source, std::uint64_t max_memory,
-                                             unsigned threads, const py::object& progress) {
+std::pair<StackPointer, std::vector<py::str>> read_stack(const py::object& source, std::uint64_t max_memory,
+                                                         unsigned threads, const py::object& progress) {
     const Input input(source);
     std::vector<std::string> warnings;
     const StackPointer read = result_of(threads, progress, [&](const Execution& execution) {
@@ -116,7 +113,7 @@ std::pair<StackPointer, py::list> read_stack(const py::object& source, std::uint
 }
 
 /// Returns the mesh or the layers of the file, and its warnings.
-std::pair<std::variant<MeshPointer, StackPointer>, py::list>
+std::pair<std::variant<MeshPointer, StackPointer>, std::vector<py::str>>
 read_either(const py::object& source, std::optional<double> unit_mm, bool strict, const std::string& include,
             std::uint64_t max_triangles, std::uint64_t max_memory, unsigned threads,
             const py::object& progress) {
@@ -161,7 +158,7 @@ class StackWriter {
             [&](const Execution& execution) { write_planes(writer(), planes.size(), plane_of, execution); });
     }
 
-    py::list finish() {
+    std::vector<py::str> finish() {
         {
             const GilRelease released;
             writer().finish();
@@ -382,11 +379,11 @@ py::dict verified(const Stack& stack, const PlatePointer& plate, const std::stri
 }
 
 /// Returns the findings, and the warnings of the file.
-std::pair<py::dict, py::list> vectors_verified(const py::object& source, const PlatePointer& plate,
-                                               const std::optional<ScanStrategy>& strategy,
-                                               const std::string& at, double snap_mm, double tolerance,
-                                               std::optional<double> close_gaps_mm, unsigned threads,
-                                               const py::object& progress) {
+std::pair<py::dict, std::vector<py::str>>
+vectors_verified(const py::object& source, const PlatePointer& plate,
+                 const std::optional<ScanStrategy>& strategy, const std::string& at, double snap_mm,
+                 double tolerance, std::optional<double> close_gaps_mm, unsigned threads,
+                 const py::object& progress) {
     const Input input(source);
     std::vector<std::string> warnings;
     const VectorVerification found = result_of(threads, progress, [&](const Execution& execution) {
@@ -449,9 +446,34 @@ py::tuple compared(const Stack& first, const Stack& second, std::optional<double
     return py::make_tuple(found.tolerance_mm, planes, found.cut_apart);
 }
 
+/// Writes a page with all layers of the stack. Returns the warnings.
+std::vector<py::str> write_page(const StackPointer& stack, const std::string& path) {
+    const std::vector<StackPointer> stacks = stack->parts.empty() ? std::vector{stack} : stack->parts;
+    const bool empty =
+        std::all_of(stacks.begin(), stacks.end(), [](const StackPointer& part) { return part->box.empty(); });
+    PartHeads parts;
+    std::vector<std::vector<LayerPointer>> planes(stack->layers.size());
+    for (const StackPointer& part : stacks) {
+        const auto& [min, max] = empty ? shown_box(*part) : part->box;
+        parts.emplace_back(part->label.empty() ? "part" : part->label,
+                           Bounds{{{min.x, min.y, min.z}, {max.x, max.y, max.z}}}, part->exposure,
+                           part->support);
+        for (std::size_t i = 0; i < planes.size(); ++i)
+            planes[i].push_back(part->layers[i]);
+    }
+    if (planes.empty())
+        throw Error(ErrorKind::usage, "content: there are no layers to write");
+    const auto writer = open_writer(path, "html", parts, planes.size(), stack->layers.front()->get().bottom,
+                                    std::string(plane_rule_name(stack->rule)), {}, false);
+    writer->write(planes, 0);
+    return writer->finish();
+}
+
 } // namespace
 
 void bind_files(py::module_& module) {
+    const py::object stack = module.attr("Stack");
+    stack.attr("_write_page") = py::cpp_function(&write_page, py::name("_write_page"), py::is_method(stack));
     module.def("read_layers", &read_stack);
     module.def("read_any", &read_either);
     module.def("filled", &filled);

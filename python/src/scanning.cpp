@@ -1,115 +1,32 @@
-#include "scanning.hpp"
-
 #include "lamella/contour/exposure.hpp"
 #include "lamella/core/error.hpp"
 #include "lamella/core/layer_limits.hpp"
 #include "lamella/pipeline/layer_findings.hpp"
 #include "lamella/scan/scan.hpp"
 #include "lamella/scan/strategy.hpp"
-#include "lamella/scan/strategy_fields.hpp"
 
+#include "bindings.hpp"
+#include "classes.hpp"
 #include "gil_release.hpp"
-#include "layers.hpp"
-#include "pickled.hpp"
 #include "run.hpp"
 #include "shared_layer.hpp"
+#include "texts.hpp"
 
 #include <pybind11/stl.h>
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <numeric>
 #include <optional>
-#include <span>
 #include <string>
 #include <tuple>
-#include <type_traits>
 #include <utility>
-#include <variant>
 #include <vector>
 
 namespace py = pybind11;
 
 namespace lamella::python {
 namespace {
-
-/// Returns the value after conversion by a check of the package, whose errors name the attribute.
-template <class Value, class... More>
-Value checked(const char* check, const char* name, const py::object& value, const More&... more) {
-    return py::module_::import("lamella._arguments").attr(check)(name, value, more...).template cast<Value>();
-}
-
-template <class Value>
-void set_value(const char* name, Value& into, const py::object& value) {
-    if constexpr (std::is_enum_v<Value>) {
-        const NamedValues<Value> known = named_values(Value{});
-        const auto chosen = checked<std::string>("choice", name, value, known.names());
-        into = *std::ranges::find(known.values, chosen, known.name);
-    } else if constexpr (std::is_same_v<Value, bool>)
-        into = checked<bool>("flag", name, value);
-    else if constexpr (std::is_integral_v<Value>)
-        into = checked<Value>("whole", name, value, 0, std::numeric_limits<Value>::max());
-    else
-        into = checked<Value>("number", name, value);
-}
-
-template <class Value>
-py::object value_of(const Value& value) {
-    if constexpr (std::is_enum_v<Value>)
-        return py::cast(named_values(Value{}).name(value));
-    else
-        return py::cast(value);
-}
-
-/// Returns the values that an enumerated attribute can have.
-template <class Rule, class Value>
-std::string choices_of(Value Rule::* /*member*/) {
-    std::string text;
-    if constexpr (std::is_enum_v<Value>)
-        for (const std::string& name : named_values(Value{}).names())
-            text += (text.empty() ? ": \"" : ", \"") + name + '"';
-    return text;
-}
-
-/// Binds an attribute that is itself a rule.
-template <class Rule, class Part>
-void bind_part(py::class_<Rule>& cls, const char* name, Part Rule::*part, const char* about) {
-    cls.def_property(
-        name, [part](Rule& rule) -> Part& { return rule.*part; },
-        [part, name](Rule& rule, const py::object& value) {
-            if (!py::isinstance<Part>(value))
-                checked<py::object>("refuse_type", name,
-                                    py::str("a lamella.{}").format(py::type::of<Part>().attr("__name__")),
-                                    value);
-            rule.*part = value.cast<const Part&>();
-        },
-        about);
-}
-
-/// Binds attributes by the table of fields.
-template <class Rule>
-py::class_<Rule> bind_rule(py::module_& module, const char* name, const char* about,
-                           std::span<const StrategyField<Rule>> fields) {
-    py::class_<Rule> cls(module, name, about, own_new());
-    cls.def(py::init());
-    for (const StrategyField<Rule>& field : fields)
-        std::visit(
-            [&](const auto member) {
-                const char* const key = field.name.data(); // a literal
-                std::string text(field.unit);
-                text += (text.empty() ? "" : ", ") + std::string(field.help) + choices_of(member);
-                cls.def_property(
-                    key, [member](const Rule& rule) { return value_of(rule.*member); },
-                    [member, key](Rule& rule, const py::object& value) {
-                        set_value(key, rule.*member, value);
-                    },
-                    text.c_str());
-            },
-            field.member);
-    return cls;
-}
 
 std::vector<ScanLayer> layers_of(const std::vector<LayerPointer>& shared, const Rounding& rounding,
                                  const LayerLimits& limits) {
@@ -233,42 +150,6 @@ void bind_losses(py::module_& module) {
     });
 }
 
-void bind_rules(py::module_& module) {
-    constexpr const char* parameters = "What the beam does along these lines: a ParameterSet.";
-    bind_rule(module, "ParameterSet", "What a beam does along vectors and between them.", parameter_fields())
-        .def(py::init<const ParameterSet&>())
-        .def_property(
-            "name", [](const ParameterSet& self) { return path_text(self.name); },
-            [](ParameterSet& self, const py::object& value) {
-                self.name = checked<std::string>("label", "name", value);
-            },
-            "What files and machines call it.");
-    auto hatch = bind_rule(module, "HatchRule", "Parallel lines that fill an area.", hatch_fields());
-    bind_part(hatch, "parameters", &HatchRule::parameters, parameters);
-    auto contour = bind_rule(module, "ContourRule", "Lines along the outline of the part.", contour_fields());
-    bind_part(contour, "parameters", &ContourRule::parameters, parameters);
-    auto skin =
-        bind_rule(module, "SkinRule", "Where a layer has little material above it, or below.", skin_fields());
-    bind_part(skin, "hatch", &SkinRule::hatch, "Its lines: a HatchRule.");
-    py::class_<SupportRule> support(module, "SupportRule", "All of what is a support, which has no skins.",
-                                    own_new());
-    support.def(py::init());
-    bind_part(support, "contours", &SupportRule::contours, "Lines along its outline: a ContourRule.");
-    bind_part(support, "hatch", &SupportRule::hatch, "Lines that fill it: a HatchRule.");
-    auto strategy =
-        bind_rule(module, "ScanStrategy",
-                  "How a powder-bed machine is to expose a part: contours, hatches, skins. By default what "
-                  "makes sense\n"
-                  "for 316L steel and layers of 0.03 mm.",
-                  strategy_fields());
-    bind_part(strategy, "contours", &ScanStrategy::contours, "Lines along the outline: a ContourRule.");
-    bind_part(strategy, "hatch", &ScanStrategy::hatch, "Lines that fill the core: a HatchRule.");
-    bind_part(strategy, "upskin", &ScanStrategy::upskin, "Where there is little material above: a SkinRule.");
-    bind_part(strategy, "downskin", &ScanStrategy::downskin,
-              "Where there is little material below: a SkinRule.");
-    bind_part(strategy, "support", &ScanStrategy::support, "What is a support: a SupportRule.");
-}
-
 bool same_exposures(const Exposure& a, const Exposure& b) {
     return a.part == b.part && a.region == b.region && a.kind == b.kind && a.contour == b.contour &&
            a.parameters == b.parameters;
@@ -339,17 +220,15 @@ void bind_figures(py::module_& module) {
             return ScanFigures{state[0].cast<std::uint64_t>(), state[1].cast<double>(),
                                state[2].cast<double>(), state[3].cast<double>(), state[4].cast<double>()};
         });
+    complete(cls, "_rules");
 }
 
 } // namespace
 
 void bind_scanning(py::module_& module) {
-    bind_rules(module);
     bind_exposure(module);
     bind_figures(module);
     bind_losses(module);
-    module.def("check_strategy", &check_strategy);
-    module.def("strategy_text", [](const ScanStrategy& strategy) { return strategy_text(strategy); });
     module.def("exposures", &exposures);
     module.def("support_exposures", &support_exposures);
     module.def("scan", &scanned);

@@ -1,8 +1,7 @@
-#include "sections.hpp"
-
 #include "lamella/core/error.hpp"
 #include "lamella/slicing/slicer.hpp"
 
+#include "bindings.hpp"
 #include "gil_release.hpp"
 #include "placing.hpp"
 #include "run.hpp"

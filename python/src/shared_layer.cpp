@@ -2,7 +2,14 @@
 
 #include "lamella/contour/normal_form.hpp"
 #include "lamella/core/error.hpp"
+#include "lamella/polygon/compare.hpp"
 #include "lamella/write/layer_writer.hpp"
+
+#include "gil_release.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
 
 namespace lamella::python {
 
@@ -32,6 +39,24 @@ std::uint64_t SharedLayer::hash() const {
         hash_ = hatches_.empty() ? content_hash(layer_) : content_hash(ScanVectors{{layer_}, {hatches_}});
     });
     return hash_;
+}
+
+std::string hash_text(const SharedLayer& layer) {
+    std::uint64_t hash = 0;
+    {
+        const GilRelease released;
+        hash = layer.hash();
+    }
+    std::array<char, 17> text{};
+    std::snprintf(text.data(), text.size(), "%016llx", static_cast<unsigned long long>(hash));
+    return text.data();
+}
+
+bool same(const SharedLayer& first, const SharedLayer& second) {
+    const Layer& a = first.get();
+    const Layer& b = second.get();
+    return a.index == b.index && a.z == b.z && a.bottom == b.bottom && a.top == b.top &&
+           same_contours(a, b) && std::ranges::equal(first.hatches(), second.hatches());
 }
 
 Box3 box_of(const std::vector<LayerPointer>& layers) {
@@ -76,6 +101,13 @@ PlaneRule rule_named(const std::string& name) {
         throw Error(ErrorKind::usage,
                     "rule: \"" + name + "\" is neither \"section_above\" nor \"section_below\"");
     return *rule;
+}
+
+FillRule fill_rule(const std::string& name) {
+    for (const FillRule rule : {FillRule::nonzero, FillRule::evenodd, FillRule::positive})
+        if (fill_rule_name(rule) == name)
+            return rule;
+    return FillRule::none;
 }
 
 LayerStack plain(const std::vector<LayerPointer>& shared) {

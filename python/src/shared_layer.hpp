@@ -7,6 +7,7 @@
 #include "lamella/contour/rounding.hpp"
 #include "lamella/core/point.hpp"
 #include "lamella/mesh/transform.hpp"
+#include "lamella/polygon/fill.hpp"
 #include "lamella/polygon/nesting.hpp"
 
 #include "made.hpp"
@@ -60,6 +61,11 @@ class SharedLayer {
 
 using LayerPointer = std::shared_ptr<SharedLayer>;
 
+/// Returns the hash of a layer as 16 hexadecimal digits. Must be called with the interpreter lock.
+[[nodiscard]] std::string hash_text(const SharedLayer& layer);
+/// Returns whether layers are equal, with their hatch lines.
+[[nodiscard]] bool same(const SharedLayer& first, const SharedLayer& second);
+
 /// The layers of one part, or of all parts of a file together.
 struct Stack {
     std::vector<LayerPointer> layers;
@@ -84,6 +90,8 @@ struct Stack {
     std::vector<std::shared_ptr<Stack>> parts = {};
 };
 
+using StackPointer = std::shared_ptr<Stack>;
+
 /// See part_box.
 [[nodiscard]] Box3 box_of(const std::vector<LayerPointer>& layers);
 /// Returns the box of the stack or, if it is empty, the origin at the heights of its layers.
@@ -98,6 +106,8 @@ struct Stack {
 [[nodiscard]] Layer with_own_points(Layer layer);
 /// Returns the rule of this name. Throws Error{usage} for an unknown name.
 [[nodiscard]] PlaneRule rule_named(const std::string& name);
+/// Returns the rule of this name, which is one of the four.
+[[nodiscard]] FillRule fill_rule(const std::string& name);
 /// Returns the layers without copying their points, and without their hatch lines.
 [[nodiscard]] LayerStack plain(const std::vector<LayerPointer>& shared);
 /// Returns those of each part.

@@ -1,5 +1,3 @@
-#include "slicing.hpp"
-
 #include "lamella/contour/open_gaps.hpp"
 #include "lamella/core/error.hpp"
 #include "lamella/pipeline/layer_findings.hpp"
@@ -9,14 +7,15 @@
 #include "lamella/slicing/slice.hpp"
 
 #include "arrays.hpp"
+#include "bindings.hpp"
+#include "classes.hpp"
 #include "gil_release.hpp"
 #include "layer_stream.hpp"
-#include "layers.hpp"
-#include "pickled.hpp"
 #include "placing.hpp"
 #include "run.hpp"
 #include "shared_layer.hpp"
 #include "source_plate.hpp"
+#include "texts.hpp"
 
 #include <pybind11/stl.h>
 
@@ -231,9 +230,9 @@ void bind_stream(py::module_& module) {
         .def_property_readonly(
             "labels",
             [](const LayerStream& self) {
-                py::list labels;
+                std::vector<py::str> labels;
                 for (const PartHeader& part : headers_of(self.plate()))
-                    labels.append(path_text(std::get<std::string>(part)));
+                    labels.push_back(path_text(std::get<std::string>(part)));
                 return labels;
             },
             "What the parts are called in slice files, in the order of Layer.parts.")
@@ -262,6 +261,7 @@ void bind_stream(py::module_& module) {
             return "<lamella.LayerStream: " + std::to_string(self.left()) + " of " +
                    std::to_string(self.plan().layers.size()) + " layers left>";
         });
+    complete(module.attr("LayerStream"), "_methods");
     module.def("stream", [](const PlatePointer& plate, const CutPlan& cuts, const std::string& with,
                             unsigned threads, const py::object& progress) {
         return std::make_unique<LayerStream>(plate, cuts, engine(with), threads, progress);

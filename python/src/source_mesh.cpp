@@ -8,12 +8,14 @@
 #include "lamella/slicing/slice.hpp"
 
 #include "arrays.hpp"
+#include "bindings.hpp"
+#include "classes.hpp"
 #include "gil_release.hpp"
 #include "input.hpp"
-#include "layers.hpp"
-#include "pickled.hpp"
+#include "layer_of_arrays.hpp"
 #include "placing.hpp"
 #include "run.hpp"
+#include "texts.hpp"
 
 #include <pybind11/stl.h>
 
@@ -32,9 +34,6 @@ namespace py = pybind11;
 
 namespace lamella::python {
 namespace {
-
-using Doubles = py::array_t<double, py::array::c_style>;
-using Numbers = py::array_t<std::int64_t, py::array::c_style>;
 
 std::vector<Point3> vertices_of(const Doubles& rows) {
     std::vector<Point3> points(static_cast<std::size_t>(rows.shape(0)));
@@ -382,6 +381,7 @@ void bind_meshes(py::module_& module) {
         .def("__len__", [](const SourceMesh& self) { return self.mesh().size(); })
         .def("__repr__", &mesh_text);
     bind_pickle(cls, "mesh", 11, &mesh_state, &mesh_of_state);
+    complete(cls, "_methods");
 
     module.def("defect_kinds", [] {
         std::vector<std::array<std::string_view, 3>> kinds;

@@ -82,7 +82,4 @@ using MeshPointer = std::shared_ptr<SourceMesh>;
 [[nodiscard]] MeshPointer source_mesh(MeshFile file, std::optional<double> unit_mm,
                                       const Execution& execution);
 
-/// Binds the class Mesh, and functions that read and make meshes.
-void bind_meshes(pybind11::module_& module);
-
 } // namespace lamella::python

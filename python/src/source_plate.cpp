@@ -3,9 +3,10 @@
 #include "lamella/core/error.hpp"
 #include "lamella/read/mesh_file.hpp"
 
-#include "layers.hpp"
+#include "bindings.hpp"
 #include "placing.hpp"
 #include "run.hpp"
+#include "texts.hpp"
 
 #include <pybind11/stl.h>
 
@@ -133,9 +134,9 @@ void bind_plates(py::module_& module) {
     py::class_<SourcePlate, PlatePointer>(module, "Plate")
         .def_property_readonly("bottom", [](const SourcePlate& self) { return self.placed.box.min.z; })
         .def_property_readonly("names", [](const SourcePlate& self) {
-            py::list names;
+            std::vector<py::str> names;
             for (const PlateFile& file : self.placed.files)
-                names.append(path_text(file.path));
+                names.push_back(path_text(file.path));
             return names;
         });
     module.def("plate_of_mesh", &plate_of_mesh);

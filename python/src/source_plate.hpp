@@ -30,7 +30,4 @@ struct SourcePlate {
 
 using PlatePointer = std::shared_ptr<SourcePlate>;
 
-/// Binds the class Plate, and functions that make plates.
-void bind_plates(pybind11::module_& module);
-
 } // namespace lamella::python

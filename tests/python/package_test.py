@@ -2,12 +2,13 @@
 
 import ast
 import inspect
+import re
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
-from conftest import PACKAGE, ROOT
+from conftest import PACKAGE, ROOT, run_python
 
 import lamella
 
@@ -91,6 +92,39 @@ def test_stubs_have_what_the_extension_has(name):
 def test_stubs_report_which_classes_have_no_hash(name):
     unhashable = {node.target.id for node in stub()[name].body if isinstance(node, ast.AnnAssign)} & {"__hash__"}
     assert bool(unhashable) == (getattr(lamella, name).__hash__ is None)
+
+
+def test_the_stub_is_what_the_script_prints():
+    script = ROOT / "tools/python_stub.py"
+    printed = subprocess.run([sys.executable, "-B", script, PACKAGE], capture_output=True, text=True, check=True).stdout
+    assert printed == (ROOT / "python/lamella/_lamella.pyi").read_text(encoding="utf-8"), f"print it again: {script}"
+
+
+def imported(path):
+    """The modules of the package that one of its modules imports when it runs, wherever the import is."""
+    tree = ast.parse(path.read_text(encoding="utf-8"))
+    checking = {id(node) for one in ast.walk(tree) if isinstance(one, ast.If) and "TYPE_CHECKING" in ast.dump(one.test)
+                for statement in one.body for node in ast.walk(statement)}
+    for node in ast.walk(tree):
+        if isinstance(node, ast.ImportFrom) and node.level and id(node) not in checking:
+            yield from [node.module] if node.module else [alias.name for alias in node.names]
+
+
+def test_modules_import_one_another_in_no_circle():
+    sources = (ROOT / "python/src").glob("*.cpp")
+    by_extension = {name for source in sources for name in re.findall(r'"(?:lamella\.)?(_[a-z]+)"\)', source.read_text())}
+    files = {path.stem: path for path in (ROOT / "python/lamella").glob("_[a-z]*.py")}
+    needs = {name: set(imported(path)) for name, path in files.items()}
+    needs["_lamella"] = {"_errors", "_arguments"} | (by_extension & set(files))
+    assert {"_methods", "_rules"} <= needs["_lamella"]
+    while free := {name for name in needs if not needs[name] & set(needs)}:
+        needs = {name: others for name, others in needs.items() if name not in free}
+    assert needs == {}
+
+
+def test_classes_are_whole_when_the_extension_is_imported():
+    code = "import sys, lamella._lamella as e; print(e.Layer.offset.__module__, e.HatchRule(distance=1).distance)"
+    assert run_python(code).split() == ["lamella._methods", "1.0"]
 
 
 def test_the_extension_is_where_the_stubs_are():

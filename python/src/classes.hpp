@@ -1,6 +1,6 @@
 #pragma once
 
-// Pickling of classes.
+// Parts that classes of the extension have in common: construction, pickling, and methods in Python.
 
 #include "lamella/core/error.hpp"
 
@@ -21,6 +21,12 @@ inline pybind11::custom_type_setup own_new() {
             return pybind11::detail::make_new_instance(type);
         };
     });
+}
+
+/// Gives a class the methods that a module of the package has for it: those that take keywords and check
+/// their arguments. The constructor that is bound already becomes `_make`.
+inline void complete(const pybind11::handle& cls, const char* methods) {
+    pybind11::module_::import((std::string("lamella.") + methods).c_str()).attr("complete")(cls);
 }
 
 /// Makes objects picklable and copyable as a tuple of `size` items. `get(object)` returns the tuple.
