@@ -56,6 +56,15 @@ def rook(bodies):
     return bodies("rook")
 
 
+@pytest.fixture
+def jobs(program, rook, tmp_path):
+    """A folder with layers and scan vectors of the program."""
+    program.succeed("slice", rook, "-o", tmp_path / "part.cli", "--layer-height", 2)
+    for name in ("program.ilt", "program.ovf"):
+        program.succeed("scan", tmp_path / "part.cli", "-o", tmp_path / name)
+    return tmp_path
+
+
 def samples(page):
     """The samples of a page of the documentation, in order."""
     text = (ROOT / page).read_text(encoding="utf-8")
