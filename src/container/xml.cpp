@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cassert>
 #include <exception>
+#include <map>
 #include <memory>
 #include <new>
 #include <optional>
@@ -45,6 +46,19 @@ bool declares_utf8_without_hyphen(std::string_view bytes) {
            declaration.compare(quote + 5, 1, declaration, quote, 1) == 0;
 }
 
+/// Returns the prefixes that attributes may have without being the same as another attribute, ascending.
+std::vector<std::string> plain_prefixes(const std::map<std::string, std::string>& spaces) {
+    std::vector<std::string> prefixes;
+    for (const auto& declared : spaces) {
+        const auto same_space = [&](const auto& other) {
+            return !other.first.empty() && other.first != declared.first && other.second == declared.second;
+        };
+        if (!declared.first.empty() && std::none_of(spaces.begin(), spaces.end(), same_space))
+            prefixes.push_back(declared.first);
+    }
+    return prefixes;
+}
+
 /// The state of one parse. Exceptions must not pass through the C library: they are stored and rethrown after
 /// it returns.
 class Parse {
@@ -62,8 +76,8 @@ class Parse {
         XML_SetStartDoctypeDeclHandler(parser_.get(), on_doctype);
         if (handlers.text)
             XML_SetCharacterDataHandler(parser_.get(), on_text);
-        if (handlers.declare)
-            XML_SetStartNamespaceDeclHandler(parser_.get(), on_namespace);
+        if (handlers.declare || handlers.skim)
+            XML_SetNamespaceDeclHandler(parser_.get(), on_namespace, on_namespace_end);
         if (rules.utf8_only)
             XML_SetXmlDeclHandler(parser_.get(), on_declaration);
     }
@@ -71,27 +85,23 @@ class Parse {
     void run() {
         if (rules_.utf8_only && (bytes_.starts_with("\xff\xfe") || bytes_.starts_with("\xfe\xff")))
             fail("found UTF-16, expected UTF-8");
-        if (handlers_.skim)
-            skim_through();
+        skim_through(bytes_.size());
         feed(bytes_.size(), true);
     }
 
     /// See parse_xml_elements.
     std::size_t run_between(std::size_t begin, std::size_t limit, std::string_view parent) {
         at_ = reported_ = begin;
-        not_fed_ = static_cast<XML_Index>(begin) - static_cast<XML_Index>(parent.size());
-        fed_ = parsed_ = static_cast<XML_Index>(parent.size());
-        limit_ = fed_ + static_cast<XML_Index>(limit - begin);
-        if (XML_Parse(parser_.get(), parent.data(), static_cast<int>(parent.size()), XML_FALSE) !=
-            XML_STATUS_OK)
-            fail("the element around has no usable name");
+        limit_ = limit;
+        enter(parent);
+        skim_through(limit);
         constexpr std::size_t step = std::size_t{1} << 14;
-        for (std::size_t to = limit; stop_ < 0; to = at_ + step) {
+        for (std::size_t to = std::max(limit, at_ + step); !stop_; to = at_ + step) {
             if (at_ == bytes_.size())
                 fail("the document ends within an element");
             feed(std::min(to, bytes_.size()), false);
         }
-        return begin + static_cast<std::size_t>(stop_) - parent.size();
+        return *stop_;
     }
 
   private:
@@ -99,7 +109,7 @@ class Parse {
     template <class Call>
     static void guarded(void* data, const Call& call) {
         Parse& parse = *static_cast<Parse*>(data);
-        if (parse.error_ || parse.stop_ >= 0)
+        if (parse.error_ || parse.stop_)
             return;
         try {
             call(parse);
@@ -126,16 +136,15 @@ class Parse {
                 static_cast<std::size_t>(XML_GetSpecifiedAttributeCount(parse.parser_.get())) / 2 >
                     most_attributes)
                 parse.fail(fmt::format("found an element of more than {} attributes", most_attributes));
-            if (parse.limit_ >= 0 && parse.depth_ <= 2) {
-                if (parse.depth_ == 1)
-                    return; // the parent
-                if (XML_GetCurrentByteIndex(parse.parser_.get()) >= parse.limit_)
-                    return parse.stop();
-            }
             parse.declared_ = 0;
+            if (parse.depth_ == 1)
+                parse.prefixes_ = plain_prefixes(parse.spaces_);
+            if (parse.enters_)
+                return;
+            if (parse.depth_ == 2 && parse.position() >= parse.limit_)
+                return parse.stop();
             if (parse.depth_ == 2 && parse.handlers_.element)
-                parse.handlers_.element(
-                    static_cast<std::size_t>(XML_GetCurrentByteIndex(parse.parser_.get()) + parse.not_fed_));
+                parse.handlers_.element(parse.position());
             parse.note_tag();
             parse.handlers_.start(split(name), XmlAttributes(attributes), parse.line());
         });
@@ -143,7 +152,7 @@ class Parse {
 
     static void on_end(void* data, const XML_Char* name) {
         guarded(data, [&](Parse& parse) {
-            if (--parse.depth_ == 0 && parse.limit_ >= 0)
+            if (--parse.depth_ == 0 && parse.limit_ != whole_document)
                 return parse.stop();
             parse.note_tag();
             parse.handlers_.end(split(name));
@@ -159,7 +168,21 @@ class Parse {
             if (++parse.declared_ > most_attributes)
                 parse.fail(
                     fmt::format("found an element that declares more than {} namespaces", most_attributes));
-            parse.handlers_.declare(prefix == nullptr ? "" : prefix, space == nullptr ? "" : space);
+            const std::string_view prefix_text = prefix == nullptr ? "" : prefix;
+            const std::string_view space_text = space == nullptr ? "" : space;
+            if (parse.depth_ == 0)
+                parse.spaces_.emplace(prefix_text, space_text);
+            else
+                ++parse.inner_spaces_;
+            if (parse.handlers_.declare)
+                parse.handlers_.declare(prefix_text, space_text);
+        });
+    }
+
+    static void on_namespace_end(void* data, const XML_Char*) {
+        guarded(data, [](Parse& parse) {
+            if (parse.depth_ > 0)
+                --parse.inner_spaces_;
         });
     }
 
@@ -185,10 +208,26 @@ class Parse {
         });
     }
 
+    /// Returns the offset of the current tag in the document.
+    [[nodiscard]] std::size_t position() const {
+        return static_cast<std::size_t>(XML_GetCurrentByteIndex(parser_.get()) + not_fed_);
+    }
+
     /// Ends parsing before the current tag.
     void stop() {
-        stop_ = XML_GetCurrentByteIndex(parser_.get());
+        stop_ = position();
         XML_StopParser(parser_.get(), XML_FALSE);
+    }
+
+    /// Feeds the parser start tags of which the handlers do not learn, and continues at `at_`.
+    void enter(std::string_view tags) {
+        enters_ = true;
+        if (XML_Parse(parser_.get(), tags.data(), static_cast<int>(tags.size()), XML_FALSE) != XML_STATUS_OK)
+            fail("the element around has no usable name");
+        enters_ = false;
+        fed_ += static_cast<XML_Index>(tags.size());
+        parsed_ = last_tag_end_ = fed_;
+        not_fed_ = static_cast<XML_Index>(at_) - fed_;
     }
 
     /// Stores where a tag ends if skimming is in use.
@@ -210,7 +249,7 @@ class Parse {
                                                 last && at_ == end ? XML_TRUE : XML_FALSE);
             if (error_)
                 std::rethrow_exception(error_);
-            if (stop_ >= 0)
+            if (stop_)
                 return;
             if (status != XML_STATUS_OK) {
                 const XML_Error code = XML_GetErrorCode(parser_.get());
@@ -247,13 +286,20 @@ class Parse {
         }
     }
 
-    /// Feeds the document, except skimmed elements, up to the end of the last skimmed elements.
-    void skim_through() {
-        std::size_t from = 0;
+    /// Feeds the document, except skimmed elements, up to the end of the last skimmed elements before
+    /// `limit`.
+    void skim_through(std::size_t limit) {
+        if (!handlers_.skim)
+            return;
+        const std::size_t last_tag = bytes_.rfind('<');
+        std::size_t from = at_;
         // A call of `skim` without success costs time, so the distance to the next call doubles.
         std::size_t patience = std::size_t{1} << 16;
-        while (const std::optional<std::size_t> tag = find_tag(from)) {
-            std::size_t blanks = *tag;
+        while (!stop_) {
+            const std::size_t tag = find_tag(from, limit);
+            if (tag == limit)
+                return;
+            std::size_t blanks = tag;
             while (blanks > at_ && is_blank(bytes_[blanks - 1]))
                 --blanks;
             if (blanks > at_)
@@ -262,36 +308,45 @@ class Parse {
                 from = at_;
                 continue;
             }
-            XmlSkimmed skimmed;
-            if (last_tag_end_ == fed_)
-                skimmed = handlers_.skim(bytes_, *tag);
-            assert(skimmed.bytes <= bytes_.size() - *tag);
-            if (skimmed.bytes == 0) {
-                from = *tag + patience;
+            XmlCursor cursor(bytes_, tag, last_tag, prefixes_);
+            if (last_tag_end_ == fed_ && inner_spaces_ == 0)
+                handlers_.skim(cursor);
+            if (cursor.position() > tag)
+                skip(tag, cursor);
+            from = std::max(at_, tag);
+            if (cursor.position() == tag || !cursor.open().empty() || bytes_.substr(at_, 2) != "</") {
+                from += patience;
                 patience *= 2;
-                continue;
             }
-            skimmed_lines_ += line_at(bytes_.substr(at_), *tag - at_) - 1;
-            skimmed_lines_ +=
-                skimmed.lines ? *skimmed.lines : line_at(bytes_.substr(*tag), skimmed.bytes) - 1;
-            at_ = from = *tag + skimmed.bytes;
-            not_fed_ = static_cast<XML_Index>(at_) - fed_;
-            report_progress(at_);
         }
     }
 
-    /// Returns the nearest tag of `many`. All of them are searched for in one window after the other, because
-    /// one of them may be far away.
-    [[nodiscard]] std::optional<std::size_t> find_tag(std::size_t from) const {
+    /// Continues where the cursor is, which has read from `tag` on.
+    void skip(std::size_t tag, const XmlCursor& cursor) {
+        const std::size_t bytes = cursor.position() - tag;
+        skimmed_lines_ += line_at(bytes_.substr(at_), tag - at_) - 1;
+        skimmed_lines_ += cursor.lines() ? *cursor.lines() : line_at(bytes_.substr(tag), bytes) - 1;
+        at_ = cursor.position();
+        std::string tags;
+        for (const std::string_view name : cursor.open())
+            tags += fmt::format("<{}>", name);
+        enter(tags);
+        report_progress(at_);
+    }
+
+    /// Returns the nearest tag of `many` before `limit`, or `limit`. All of them are searched for in one
+    /// window after the other, because one of them may be far away.
+    [[nodiscard]] std::size_t find_tag(std::size_t from, std::size_t limit) const {
         constexpr std::size_t window = std::size_t{1} << 14;
-        for (std::size_t begin = from; begin < bytes_.size(); begin += window) {
-            std::size_t nearest = begin + window;
+        for (std::size_t begin = from; begin < limit; begin += window) {
+            const std::size_t end = std::min(begin + window, limit);
+            std::size_t nearest = end;
             for (const std::string_view tag : handlers_.many)
                 nearest = std::min(nearest, find_tag(tag, begin, nearest));
-            if (nearest < begin + window)
+            if (nearest < end)
                 return nearest;
         }
-        return std::nullopt;
+        return limit;
     }
 
     /// Returns where a tag begins in [from, limit), or `limit`. "<triangle" does not match "<triangles".
@@ -319,8 +374,13 @@ class Parse {
     XML_Index parsed_ = 0;        ///< bytes fed that the parser has consumed
     XML_Index last_tag_end_ = -1; ///< counts bytes fed
     XML_Index not_fed_ = 0;       ///< offset in the document minus that in the bytes fed
-    XML_Index limit_ = -1;        ///< for elements of a parent: parsing ends at the first one from here on
-    XML_Index stop_ = -1;         ///< where it ended
+    static constexpr std::size_t whole_document = std::string_view::npos;
+    std::size_t limit_ = whole_document; ///< for elements of a parent: parsing ends at the first from here on
+    std::optional<std::size_t> stop_;    ///< where it ended
+    bool enters_ = false;                ///< in enter()
+    std::map<std::string, std::string> spaces_; ///< namespaces that the root declares, by prefix
+    std::vector<std::string> prefixes_;         ///< of plain attributes
+    std::size_t inner_spaces_ = 0;              ///< namespaces that elements within the root declare
     std::size_t skimmed_lines_ = 0;
     std::size_t reported_ = 0;
 };

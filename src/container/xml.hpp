@@ -2,13 +2,12 @@
 
 // Reads XML as a stream of elements.
 
+#include "container/xml_cursor.hpp"
+
 #include <cstddef>
-#include <cstdint>
 #include <functional>
-#include <optional>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 namespace lamella {
@@ -37,12 +36,6 @@ class XmlAttributes {
     const char** pairs_; // name, value, ..., null
 };
 
-/// The elements that a handler has read.
-struct XmlSkimmed {
-    std::size_t bytes = 0;
-    std::optional<std::uint64_t> lines = {}; ///< number of line ends in them; if unknown, they are counted
-};
-
 /// Callbacks of the parser. Those with a default may be omitted.
 struct XmlHandlers {
     /// `line` counts from 1. Views are valid during the call.
@@ -63,13 +56,14 @@ struct XmlHandlers {
     /// with its offset in the document, which must be UTF-8.
     std::function<void(std::size_t position)> element = {};
 
-    /// Tags of numerous elements, such as "<vertex", which a handler can read faster than the parser. If such
-    /// a tag follows another tag, with only blanks between them, `skim` is called with the whole document and
-    /// the offset of the tag. It returns the bytes that the parser must skip from there, and guarantees that
-    /// these are whole, well-formed elements. If there are none, the parser reads the elements, and `skim`
-    /// may not be called again for a while.
+    /// Beginnings of the tags of numerous elements, such as "<vertex", which a handler can read faster than
+    /// the parser. If such a tag follows another tag, with only blanks between them, and all namespaces are
+    /// declared by the root element, `skim` is called with a cursor before it. The parser continues where
+    /// `skim` leaves the cursor, within the elements that the cursor has entered. The handler guarantees that
+    /// the elements before are well-formed. If they are not the rest of their parent, `skim` is not called
+    /// again for a while.
     std::vector<std::string_view> many = {};
-    std::function<XmlSkimmed(std::string_view document, std::size_t position)> skim = {};
+    std::function<void(XmlCursor& cursor)> skim = {};
 };
 
 struct XmlRules {

@@ -5,7 +5,7 @@
 #include "core/lower_case.hpp"
 #include "read/decimal_text.hpp"
 #include "read/mesh_document.hpp"
-#include "read/plain_elements.hpp"
+#include "read/plain_values.hpp"
 #include "read/read_limits.hpp"
 #include "read/slicer_config.hpp"
 
@@ -65,38 +65,25 @@ constexpr std::array units = {
     Unit{"\xce\xbcm", 0.001},
 };
 
-/// Elements without attributes that contain a number or elements of this kind.
-class PlainNumbers : public PlainTags {
-  public:
-    using PlainTags::PlainTags;
-    using PlainTags::take;
-
-    bool take(double& number) {
-        return move(read_decimal(next(), end(), number)) && std::abs(number) <= farthest_coordinate;
-    }
-
-    bool take(std::uint32_t& number) { return move(read_index(next(), end(), number)); }
-};
-
-bool read_vertices(std::string_view run, const MeshText&, std::span<Point3> vertices) {
-    PlainNumbers tags(run);
+bool read_vertices(std::string_view run, const MeshText& text, std::span<Point3> vertices) {
+    XmlCursor tags = cursor_over(run, text.prefixes);
     for (Point3& v : vertices)
-        if (!(tags.take("<vertex>") && tags.take("<coordinates>") && tags.take("<x>") && tags.take(v.x) &&
-              tags.take("</x>") && tags.take("<y>") && tags.take(v.y) && tags.take("</y>") &&
-              tags.take("<z>") && tags.take(v.z) && tags.take("</z>") && tags.take("</coordinates>") &&
-              tags.take("</vertex>")))
+        if (!(tags.take("<vertex>") && tags.take("<coordinates>") && tags.take("<x>") &&
+              take_value(tags, v.x) && tags.take("</x>") && tags.take("<y>") && take_value(tags, v.y) &&
+              tags.take("</y>") && tags.take("<z>") && take_value(tags, v.z) && tags.take("</z>") &&
+              tags.take("</coordinates>") && tags.take("</vertex>")))
             return false;
-    return tags.done();
+    return tags.next() == tags.end();
 }
 
-bool read_triangles(std::string_view run, const MeshText&, std::span<TriangleIndices> triangles) {
-    PlainNumbers tags(run);
+bool read_triangles(std::string_view run, const MeshText& text, std::span<TriangleIndices> triangles) {
+    XmlCursor tags = cursor_over(run, text.prefixes);
     for (TriangleIndices& t : triangles)
-        if (!(tags.take("<triangle>") && tags.take("<v1>") && tags.take(t[0]) && tags.take("</v1>") &&
-              tags.take("<v2>") && tags.take(t[1]) && tags.take("</v2>") && tags.take("<v3>") &&
-              tags.take(t[2]) && tags.take("</v3>") && tags.take("</triangle>")))
+        if (!(tags.take("<triangle>") && tags.take("<v1>") && take_value(tags, t[0]) && tags.take("</v1>") &&
+              tags.take("<v2>") && take_value(tags, t[1]) && tags.take("</v2>") && tags.take("<v3>") &&
+              take_value(tags, t[2]) && tags.take("</v3>") && tags.take("</triangle>")))
             return false;
-    return tags.done();
+    return tags.next() == tags.end();
 }
 
 constexpr MeshTextForm text_form{

@@ -6,7 +6,7 @@
 #include "core/counted.hpp"
 #include "core/executor.hpp"
 #include "mesh/singular.hpp"
-#include "read/mesh_text.hpp"
+#include "read/plain_values.hpp"
 #include "read/read_limits.hpp"
 
 #include <fmt/format.h>

@@ -63,6 +63,15 @@ class TextPieces {
 [[nodiscard]] TextPieces find_text_pieces(std::string_view text, std::size_t begin, std::string_view word,
                                           Executor& executor);
 
+/// The same for elements of XML from `begin` on, which probably begin like the first one, up to the value of
+/// an attribute.
+[[nodiscard]] inline TextPieces find_sibling_pieces(std::string_view text, std::size_t begin,
+                                                    Executor& executor) {
+    constexpr std::size_t longest = 64;
+    const std::string_view first = text.substr(begin, longest);
+    return find_text_pieces(text, begin, first.substr(0, first.find_first_of("\"'>")), executor);
+}
+
 /// Calls parse(begin, limit) for each piece on all threads, and take(piece) in the order of the file. `parse`
 /// ends at the first end of a layer at or after `limit`, or at the end of the file, and returns the piece,
 /// whose member `end` is this offset. A piece is taken only if the one before it ended where it begins;

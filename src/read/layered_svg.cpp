@@ -670,8 +670,8 @@ class SvgDocument {
             progress_.add(read - counted);
         };
         handlers.many = {"<g"};
-        handlers.skim = [&](std::string_view, std::size_t position) {
-            return XmlSkimmed{read_layers(position)};
+        handlers.skim = [&](XmlCursor& cursor) {
+            cursor.move_to(cursor.position() + read_layers(cursor.position()));
         };
         parse_xml(bytes_, name_, handlers);
         reader_.finish(file, bytes_.size(), executor_,
@@ -721,11 +721,7 @@ class SvgDocument {
         if (!reader_.is_in_root() || !in_pieces_)
             return 0;
         const std::string parent = reader_.parent();
-        // Layers probably begin like the first one, up to the value of an attribute.
-        constexpr std::size_t longest = 64;
-        const std::string_view first = bytes_.substr(position, longest);
-        const TextPieces pieces =
-            find_text_pieces(bytes_, position, first.substr(0, first.find_first_of("\"'>")), executor_);
+        const TextPieces pieces = find_sibling_pieces(bytes_, position, executor_);
         std::size_t end = position;
         read_pieces(
             pieces.begins(), bytes_.size(), executor_,

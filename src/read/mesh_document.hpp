@@ -77,8 +77,8 @@ class MeshDocumentReader {
         };
         if (skim_ != nullptr) {
             handlers.many = {form.vertex.tag, form.triangle.tag};
-            handlers.skim = [this, &form](std::string_view document, std::size_t location) {
-                return skim(document, location, form);
+            handlers.skim = [this, &form](XmlCursor& cursor) {
+                skim(cursor, form);
             };
         }
         parse_xml(text, name_, handlers, rules);
@@ -135,14 +135,15 @@ class MeshDocumentReader {
     }
 
   private:
-    XmlSkimmed skim(std::string_view document, std::size_t location, const MeshTextForm& form) {
+    void skim(XmlCursor& cursor, const MeshTextForm& form) {
         const bool vertices = in() == Where::vertices;
         if (!vertices && in() != Where::triangles)
-            return {};
+            return;
         MeshText& text = object().text;
         text.location = here();
-        return vertices ? take_run(document, location, form.vertex.end_of_list, text.vertices, *skim_)
-                        : take_run(document, location, form.triangle.end_of_list, text.triangles, *skim_);
+        text.prefixes.assign(cursor.prefixes().begin(), cursor.prefixes().end());
+        take_run(cursor, vertices ? form.vertex.end_of_list : form.triangle.end_of_list,
+                 vertices ? text.vertices : text.triangles, *skim_);
     }
 
     /// Fails if the document is skimmed, because the order of vertices would be lost if the parser read some

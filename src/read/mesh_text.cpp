@@ -108,9 +108,10 @@ void give_back(const IndexedMesh& mesh, ReadLimits& limits) {
     limits.give_back(mesh.triangles.size(), mesh_bytes(mesh.vertices.size(), mesh.triangles.size()));
 }
 
-XmlSkimmed take_run(std::string_view document, std::size_t location, std::string_view end_tag,
-                    std::vector<std::string_view>& runs, Executor& executor) {
-    assert(location <= document.size());
+void take_run(XmlCursor& cursor, std::string_view end_tag, std::vector<std::string_view>& runs,
+              Executor& executor) {
+    const std::string_view document = cursor.text();
+    const std::size_t location = cursor.position();
     struct Chunk {
         std::size_t end = std::string_view::npos; ///< where the tag is
         std::uint64_t lines = 0;                  ///< line ends up to there
@@ -132,12 +133,11 @@ XmlSkimmed take_run(std::string_view document, std::size_t location, std::string
             if (chunk.end == std::string_view::npos)
                 continue;
             runs.push_back(document.substr(location, chunk.end - location));
-            return {chunk.end - location, lines};
+            return cursor.move_to(chunk.end, lines);
         }
         at = std::min(at + chunks.size() * text_chunk_bytes, document.size());
         chunks_ahead = 4 * std::size_t{executor.workers()};
     }
-    return {};
 }
 
 std::size_t degenerate_triangles(const IndexedMesh& mesh) {

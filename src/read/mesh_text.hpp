@@ -1,12 +1,12 @@
 #pragma once
 
 // Reads long sequences of small elements in XML files, the vertices and triangles, in parallel and without an
-// XML parser. Elements that are not plain (see read/plain_elements.hpp) are left to the parser.
+// XML parser. Elements that are not plain (see container/xml_cursor.hpp) are left to the parser.
 
 #include "lamella/core/point.hpp"
 #include "lamella/mesh/indexed_mesh.hpp"
 
-#include "container/xml.hpp"
+#include "container/xml_cursor.hpp"
 
 #include <algorithm>
 #include <array>
@@ -29,14 +29,19 @@ struct MeshText {
     std::vector<std::string_view> vertices;
     std::vector<std::string_view> triangles;
     /// Prefixes of namespaces that attributes may have.
-    std::span<const std::string> prefixes;
+    std::vector<std::string> prefixes;
     std::string location; ///< for error messages
 };
 
-/// Appends the sequence from offset `location` of a document up to `end_tag` to `runs`, and returns it; no
-/// bytes if this tag is missing. All threads look for the end of a long sequence.
-[[nodiscard]] XmlSkimmed take_run(std::string_view document, std::size_t location, std::string_view end_tag,
-                                  std::vector<std::string_view>& runs, Executor& executor);
+/// Returns a cursor over a sequence.
+[[nodiscard]] inline XmlCursor cursor_over(std::string_view run, std::span<const std::string> prefixes) {
+    return {{run.data(), run.size() + 1}, 0, run.size(), prefixes};
+}
+
+/// Appends the sequence from the cursor up to `end_tag` to `runs`, and moves the cursor to this tag, unless
+/// it is missing. All threads look for the end of a long sequence.
+void take_run(XmlCursor& cursor, std::string_view end_tag, std::vector<std::string_view>& runs,
+              Executor& executor);
 
 /// The written form of a kind of element.
 template <class Item>
@@ -62,9 +67,6 @@ struct MeshTextForm {
     MeshTextKind<Point3> vertex;
     MeshTextKind<TriangleIndices> triangle;
 };
-
-/// Upper bound on coordinates, beyond which squares and volumes would overflow.
-inline constexpr double farthest_coordinate = 1e38;
 
 /// Reads the meshes. Returns nullopt for a mesh that is not plain, because an element has another form or an
 /// index is out of range. Memory is allocated only for elements that the text can contain and that the limits

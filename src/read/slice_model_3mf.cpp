@@ -1,6 +1,6 @@
-// The slices of a stack follow one another, and are nearly all of the text. They are read in pieces (see
-// read/layer_pieces.hpp). Slices that are plain (see read/plain_elements.hpp) are read without an XML parser.
-// A parser reads the others, and everything else in the part.
+// The slices of a stack follow one another, and are nearly all of the text. Several threads read them in
+// pieces (see read/layer_pieces.hpp). Slices that are plain are scanned (see container/xml_cursor.hpp). A
+// parser reads the others, and everything else in the part.
 
 #include "read/slice_model_3mf.hpp"
 
@@ -8,18 +8,16 @@
 
 #include "container/text_position.hpp"
 #include "core/executor.hpp"
-#include "read/decimal_text.hpp"
 #include "read/layer_pieces.hpp"
-#include "read/mesh_text.hpp"
-#include "read/plain_elements.hpp"
+#include "read/plain_values.hpp"
 #include "read/read_limits.hpp"
 #include "read/three_mf_terms.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cassert>
-#include <cmath>
 #include <iterator>
 #include <limits>
 #include <optional>
@@ -28,29 +26,12 @@
 
 namespace lamella {
 
-/// The tags of slices whose names have this prefix.
-struct SliceTags {
-    explicit SliceTags(std::string_view prefix)
-        : before(prefix.empty() ? std::string() : fmt::format("{}:", prefix)) {}
-
-    std::string before;
-    std::string stack = before + "slicestack";
-    std::string slice = "<" + before + "slice";
-    std::string vertices = "<" + before + "vertices";
-    std::string vertex = "<" + before + "vertex";
-    std::string polygon = "<" + before + "polygon";
-    std::string segment = "<" + before + "segment";
-    std::string end_of_slice = "</" + before + "slice";
-    std::string end_of_vertices = "</" + before + "vertices";
-    std::string end_of_polygon = "</" + before + "polygon";
-};
-
 /// The text of a part, and what is needed to read its plain slices.
 struct SliceText {
     ByteSource part;
     std::size_t last_tag;
     std::vector<std::string> prefixes; ///< of attributes
-    SliceTags tags;
+    std::string before;                ///< prefix of the names of elements, such as "s:"
 };
 
 namespace {
@@ -67,8 +48,9 @@ struct SliceWarnings {
     }
 };
 
-/// Reads slices of one stack, element by element. A `where` describes the position of an element. Functions
-/// that return false have found an element that breaks a rule.
+/// Reads slices of one stack, element by element: those of a parser (ThreeMfElement), and plain ones
+/// (PlainElement). A `where` describes the position of an element. Functions that return false have found an
+/// element that is not plain or breaks a rule, and have changed nothing.
 class SliceReader {
   public:
     /// The slices must lie above `bottom`.
@@ -76,88 +58,68 @@ class SliceReader {
         : stack_(std::make_shared<SliceStack>(SliceStack{bottom, {}})), limits_(limits) {}
     SliceReader(SliceReader&&) noexcept = default;
     SliceReader& operator=(SliceReader&&) = delete;
-    ~SliceReader() { limits_.give_back(0, vertices_.capacity() * sizeof(Point2)); }
+    /// Subtracts what is not kept from the limits.
+    ~SliceReader() {
+        limits_.give_back(0, vertices_.capacity() * sizeof(Point2));
+        if (stack_.use_count() != 1)
+            return;
+        limits_.give_back(0, stack_->slices.capacity() * sizeof(Slice));
+        for (const Slice& slice : stack_->slices)
+            limits_.give_back(0, slice.raw.points.capacity() * sizeof(Point2) +
+                                     slice.raw.ends.capacity() * sizeof(RawLayer::Contour));
+    }
 
     /// Handles an element as the parser finds it.
     void start(const ThreeMfElement& element) {
         line_ = element.line;
-        if (element.name.space != three_mf::slices)
-            return;
-        const std::string_view name = element.name.local;
-        const auto location = at_line(line_);
-        if (name == "slice") {
-            const double top = element["ztop"].number();
-            if (!start_slice(top, location))
-                element.fail(fmt::format("a slice with ztop = {}", top),
-                             fmt::format("it to lie above z = {}", stack_->top()));
-        } else if (name == "vertex" && in_slice()) {
-            add_vertex({element["x"].number(), element["y"].number()}, location);
-        } else if (name == "polygon" && in_slice()) {
-            const std::uint32_t index = element["startv"].index();
-            if (!start_polygon(index, location))
-                fail_for_vertex(element, index);
-        } else if (name == "segment" && in_slice() && start_) {
-            const std::uint32_t index = element["v2"].index();
-            if (!add_point(index, location))
-                fail_for_vertex(element, index);
-        }
+        if (element.name.space == three_mf::slices)
+            static_cast<void>(start(element, element.name.local, at_line(line_)));
     }
 
     void end(XmlName element) {
-        if (element == XmlName{three_mf::slices, "polygon"} && in_slice())
-            end_polygon(at_line(line_));
+        if (element.space == three_mf::slices)
+            end(element.local, at_line(line_));
     }
 
-    template <class Where>
-    bool start_slice(double top, const Where& where) {
-        if (!(top > stack_->top()))
+    template <class Element, class Where>
+    bool start(const Element& element, std::string_view name, const Where& where) {
+        if (same_name(name, "vertex") && in_slice()) {
+            constexpr std::array<std::string_view, 2> names = {"x", "y"};
+            std::array<double, 2> xy{};
+            if (!element.take(names, xy))
+                return false;
+            add_vertex({xy[0], xy[1]}, where);
+            return true;
+        }
+        constexpr std::array<std::string_view, 1> of_slice = {"ztop"};
+        constexpr std::array<std::string_view, 1> of_polygon = {"startv"};
+        constexpr std::array<std::string_view, 1> of_segment = {"v2"};
+        std::array<std::uint32_t, 1> index{};
+        if (same_name(name, "segment") && in_slice() && start_)
+            return element.take(of_segment, index) && (add_point(index[0], where) || fail(element, index[0]));
+        if (same_name(name, "polygon") && in_slice())
+            return element.take(of_polygon, index) &&
+                   (start_polygon(index[0], where) || fail(element, index[0]));
+        if (!same_name(name, "slice"))
+            return element.take(std::array<std::string_view, 0>(), index);
+        std::array<double, 1> top{};
+        if (!element.take(of_slice, top))
             return false;
-        limits_.make_room(stack_->slices, 1, where);
-        stack_->slices.emplace_back().top = top;
-        vertices_.clear();
-        return true;
+        if (start_slice(top[0], where))
+            return true;
+        element.fail(fmt::format("a slice with ztop = {}", top[0]),
+                     fmt::format("it to lie above z = {}", stack_->top()));
+        return false;
     }
 
     template <class Where>
-    void add_vertex(const Point2& vertex, const Where& where) {
-        limits_.make_room(vertices_, 1, where);
-        vertices_.push_back(vertex);
+    void end(std::string_view name, const Where& where) {
+        if (same_name(name, "polygon") && in_slice())
+            end_polygon(where);
     }
 
-    template <class Where>
-    bool start_polygon(std::uint32_t index, const Where& where) {
-        Slice& slice = stack_->slices.back();
-        if (slice.text) // this polygon follows the end of its slice, so that is not plain
-            slice = Slice{slice.top, slice.read_again(limits_)};
-        start_ = index;
-        return add_point(index, where);
-    }
-
-    template <class Where>
-    bool add_point(std::uint32_t index, const Where& where) {
-        if (index >= vertices_.size())
-            return false;
-        last_ = index;
-        std::vector<Point2>& points = raw().points;
-        // Usually, each vertex is used once, and the first one of a polygon is its last one, too.
-        limits_.make_room(points, points.empty() ? vertices_.size() + 1 : 1, where);
-        points.push_back(vertices_[index]);
-        return true;
-    }
-
-    template <class Where>
-    void end_polygon(const Where& where) {
-        if (!start_)
-            return;
-        const bool returning_chain = last_ != start_ && raw().is_returning_chain();
-        const bool closed = last_ == start_ || returning_chain;
-        if (returning_chain)
-            warnings_.returning.note(where);
-        else if (!closed)
-            warnings_.open.note(where);
-        raw().end_contour(closed, 0, limits_, where, warnings_.dropped);
-        start_.reset();
-    }
+    /// Takes the line of the last element.
+    void at(std::size_t line) { line_ = line; }
 
     /// Frees the contours of the last slice, which begins at this offset of the text.
     void drop_contents(const std::shared_ptr<const SliceText>& text, std::size_t begin) {
@@ -201,26 +163,6 @@ class SliceReader {
         return true;
     }
 
-    /// Calls `read`. If it returns false or throws Error{input}, removes what it added, and returns false.
-    template <class Read>
-    bool try_to(const Read& read) {
-        const std::size_t before = stack_->slices.size();
-        SliceWarnings warnings = std::exchange(warnings_, SliceWarnings());
-        bool is_read = false;
-        try {
-            is_read = read();
-        } catch (const Error& error) {
-            if (error.kind() != ErrorKind::input)
-                throw;
-        }
-        if (is_read)
-            warnings.add(warnings_);
-        else
-            remove_from(before);
-        warnings_ = std::move(warnings);
-        return is_read;
-    }
-
     [[nodiscard]] const std::shared_ptr<SliceStack>& stack() const { return stack_; }
     [[nodiscard]] const SliceWarnings& warnings() const { return warnings_; }
     [[nodiscard]] bool in_polygon() const { return start_.has_value(); }
@@ -229,19 +171,64 @@ class SliceReader {
     [[nodiscard]] bool in_slice() const { return !stack_->slices.empty(); }
     RawLayer& raw() { return stack_->slices.back().raw; }
 
-    [[noreturn]] void fail_for_vertex(const ThreeMfElement& element, std::uint32_t index) const {
-        element.fail(fmt::format("vertex {}", index),
-                     fmt::format("less than {}, the number of vertices of the slice", vertices_.size()));
+    template <class Where>
+    bool start_slice(double top, const Where& where) {
+        if (!(top > stack_->top()))
+            return false;
+        limits_.make_room(stack_->slices, 1, where);
+        stack_->slices.emplace_back().top = top;
+        vertices_.clear();
+        return true;
     }
 
-    void remove_from(std::size_t position) {
-        std::vector<Slice>& slices = stack_->slices;
-        for (; slices.size() > position; slices.pop_back()) {
-            const RawLayer& raw = slices.back().raw;
-            limits_.give_back(0, raw.points.capacity() * sizeof(Point2) +
-                                     raw.ends.capacity() * sizeof(RawLayer::Contour));
-        }
+    template <class Where>
+    void add_vertex(const Point2& vertex, const Where& where) {
+        limits_.make_room(vertices_, 1, where);
+        vertices_.push_back(vertex);
+    }
+
+    template <class Where>
+    bool start_polygon(std::uint32_t index, const Where& where) {
+        if (index >= vertices_.size())
+            return false;
+        Slice& slice = stack_->slices.back();
+        if (slice.text) // this polygon follows the end of its slice
+            slice = Slice{slice.top, slice.read_again(limits_)};
+        start_ = index;
+        return add_point(index, where);
+    }
+
+    template <class Where>
+    bool add_point(std::uint32_t index, const Where& where) {
+        if (index >= vertices_.size())
+            return false;
+        last_ = index;
+        std::vector<Point2>& points = raw().points;
+        // Usually, each vertex is used once, and the first one of a polygon is its last one, too.
+        limits_.make_room(points, points.empty() ? vertices_.size() + 1 : 1, where);
+        points.push_back(vertices_[index]);
+        return true;
+    }
+
+    template <class Where>
+    void end_polygon(const Where& where) {
+        if (!start_)
+            return;
+        const bool returning_chain = last_ != start_ && raw().is_returning_chain();
+        const bool closed = last_ == start_ || returning_chain;
+        if (returning_chain)
+            warnings_.returning.note(where);
+        else if (!closed)
+            warnings_.open.note(where);
+        raw().end_contour(closed, 0, limits_, where, warnings_.dropped);
         start_.reset();
+    }
+
+    template <class Element>
+    bool fail(const Element& element, std::uint32_t index) const {
+        element.fail(fmt::format("vertex {}", index),
+                     fmt::format("less than {}, the number of vertices of the slice", vertices_.size()));
+        return false;
     }
 
     std::shared_ptr<SliceStack> stack_;
@@ -253,117 +240,58 @@ class SliceReader {
     std::size_t line_ = 0; ///< of the last element
 };
 
-/// Reads a slice that is plain. `lines` are those of the whole text.
-class PlainSlice {
-  public:
-    PlainSlice(std::string_view text, std::size_t begin, std::size_t end,
-               std::span<const std::string> prefixes, const SliceTags& tags, SliceReader& reader,
-               LineCounter& lines)
-        : text_(text), tags_(tags), reader_(reader), lines_(lines),
-          elements_(text.substr(begin, end - begin), prefixes) {}
+/// The element whose name a cursor has taken, as SliceReader needs it.
+struct PlainElement {
+    XmlCursor& cursor;
+    std::string_view name;
+    XmlTagEnd& end;
 
-    /// Returns false if the slice is not plain.
-    bool read() {
-        const PlainTagEnd end = start_slice();
-        return end == PlainTagEnd::element || (end == PlainTagEnd::start_tag && read_vertices() &&
-                                               read_polygons() && take_end(tags_.end_of_slice));
+    template <std::size_t count, class Values>
+    bool take(const std::array<std::string_view, count>& names, Values& values) const {
+        if (count == 0 && name != "vertices")
+            return false; // its meaning is that of the parser
+        end = take_values(cursor, names, values);
+        return end != XmlTagEnd::none;
     }
-
-    /// Returns the offset of what follows the slice.
-    [[nodiscard]] std::size_t end() { return offset(elements_.next()); }
-
-  private:
-    [[nodiscard]] std::size_t offset(const char* position) const {
-        return static_cast<std::size_t>(position - text_.data());
-    }
-
-    [[nodiscard]] auto at(const char* tag) const {
-        return [this, tag] {
-            return fmt::format("line {}", lines_.line(offset(tag)));
-        };
-    }
-
-    bool take_end(std::string_view tag) { return elements_.take(tag) && elements_.take(">"); }
-
-    PlainValue number(int index, const char* text, double& value) const {
-        const char* const end = read_decimal(text, elements_.end(), value);
-        return {index, std::abs(value) <= farthest_coordinate ? end : nullptr};
-    }
-
-    /// Reads the rest of a tag, in which the attribute `name` is an index.
-    PlainTagEnd take_index(std::string_view name, std::uint32_t& value) {
-        return elements_.take_attributes(
-            1, [&](const char* other, std::size_t length, const char* text) -> PlainValue {
-                if (std::string_view(other, length) != name)
-                    return {};
-                return {0, read_index(text, elements_.end(), value)};
-            });
-    }
-
-    PlainTagEnd start_slice() {
-        const char* const tag = elements_.next();
-        double top = 0;
-        if (!elements_.take(tags_.slice))
-            return PlainTagEnd::none;
-        const PlainTagEnd end =
-            elements_.take_attributes(1, [&](const char* name, std::size_t length, const char* value) {
-                return std::string_view(name, length) == "ztop" ? number(0, value, top) : PlainValue();
-            });
-        return end != PlainTagEnd::none && reader_.start_slice(top, at(tag)) ? end : PlainTagEnd::none;
-    }
-
-    bool read_vertices() {
-        if (!elements_.take(tags_.vertices))
-            return true;
-        const PlainTagEnd end =
-            elements_.take_attributes(0, [](const char*, std::size_t, const char*) { return PlainValue(); });
-        if (end != PlainTagEnd::start_tag)
-            return end == PlainTagEnd::element;
-        for (const char* tag = elements_.next(); elements_.take(tags_.vertex); tag = elements_.next()) {
-            double xy[2] = {};
-            const auto read = [&](const char* name, std::size_t length, const char* value) {
-                const bool wanted = length == 1 && (*name == 'x' || *name == 'y');
-                return wanted ? number(*name - 'x', value, xy[*name - 'x']) : PlainValue();
-            };
-            if (elements_.take_attributes(2, read) != PlainTagEnd::element)
-                return false;
-            reader_.add_vertex({xy[0], xy[1]}, at(tag));
-        }
-        return take_end(tags_.end_of_vertices);
-    }
-
-    bool read_polygons() {
-        for (const char* tag = elements_.next(); elements_.take(tags_.polygon); tag = elements_.next())
-            if (!read_polygon(tag))
-                return false;
-        return true;
-    }
-
-    bool read_polygon(const char* tag) {
-        std::uint32_t index = 0;
-        const PlainTagEnd end = take_index("startv", index);
-        if (end == PlainTagEnd::none || !reader_.start_polygon(index, at(tag)))
-            return false;
-        if (end == PlainTagEnd::start_tag) {
-            for (const char* next = elements_.next(); elements_.take(tags_.segment);
-                 next = elements_.next()) {
-                tag = next;
-                if (take_index("v2", index) != PlainTagEnd::element || !reader_.add_point(index, at(tag)))
-                    return false;
-            }
-            if (!take_end(tags_.end_of_polygon))
-                return false;
-        }
-        reader_.end_polygon(at(tag));
-        return true;
-    }
-
-    std::string_view text_;
-    const SliceTags& tags_;
-    SliceReader& reader_;
-    LineCounter& lines_;
-    PlainElements elements_;
+    /// The parser reports what is wrong.
+    void fail(std::string_view, std::string_view) const {}
 };
+
+/// Scans slices up to the first one at or after `limit`, to the end of the stack, or to a tag that is not
+/// plain. Calls done(begin of the slice) after each slice.
+template <class Done>
+void scan_slices(XmlCursor& cursor, std::size_t limit, std::string_view before, SliceReader& reader,
+                 LineCounter& lines, const Done& done) {
+    std::size_t slice = 0;
+    std::size_t last = cursor.position();
+    const auto where = [&] {
+        return fmt::format("line {}", lines.line(last));
+    };
+    cursor.scan(
+        limit,
+        [&](std::string_view name, std::size_t tag) {
+            XmlTagEnd end = XmlTagEnd::none;
+            if (name.size() < before.size() || !same_name({name.data(), before.size()}, before))
+                return end;
+            const std::string_view local(name.data() + before.size(), name.size() - before.size());
+            if (cursor.open().empty() != same_name(local, "slice")) // else these could not be read again
+                return end;
+            const std::size_t earlier = std::exchange(last, tag);
+            if (!reader.start(PlainElement{cursor, local, end}, local, where)) {
+                last = earlier;
+                return XmlTagEnd::none;
+            }
+            slice = cursor.open().empty() ? tag : slice;
+            return end;
+        },
+        [&](std::string_view name) {
+            reader.end(name.substr(before.size()), where);
+            if (cursor.open().empty())
+                done(slice);
+        });
+    if (!cursor.open().empty())
+        reader.at(lines.line(last));
+}
 
 /// Returns the prefix that a part probably declares for slices.
 std::optional<std::string_view> slice_prefix(std::string_view text) {
@@ -394,9 +322,9 @@ class SliceModelReader {
                                          end(element);
                                      }};
         if (prefix_) {
-            handlers.many = tags_.slice;
-            handlers.skim = [this](std::size_t position) {
-                return read_slices(position);
+            handlers.many = tag_;
+            handlers.skim = [this](XmlCursor& cursor) {
+                read_slices(cursor);
             };
         }
         parse_part(part_, handlers, executor_);
@@ -432,11 +360,13 @@ class SliceModelReader {
 
     void start_root(const ThreeMfElement& element) {
         spaces_ = &element.spaces;
-        prefixes_ = plain_prefixes(element.spaces);
         const auto space = element.spaces.find(std::string(prefix_.value_or("")));
-        in_pieces_ = space != element.spaces.end() && space->second == three_mf::slices;
-        if (in_pieces_ && !limits_.in_memory())
-            again_ = std::make_shared<const SliceText>(SliceText{part_, last_tag_, prefixes_, tags_});
+        is_plain_ = space != element.spaces.end() && space->second == three_mf::slices;
+        // One worker reads all slices where they are, without a pass ahead.
+        in_pieces_ = executor_.workers() > 1 &&
+                     std::none_of(element.spaces.begin(), element.spaces.end(), [](const auto& declared) {
+                         return declared.second.find_first_of("&<\"\t\r\n") != std::string::npos;
+                     });
     }
 
     void start_stack(const ThreeMfElement& element) {
@@ -490,48 +420,55 @@ class SliceModelReader {
 
     struct Piece {
         SliceReader slices;
-        std::size_t read_to = 0;                  ///< in the part
-        std::uint64_t line = 0;                   ///< there
-        std::size_t end = std::string_view::npos; ///< where the next piece begins, if there is one
-        bool sound = true; ///< false if the parser of the part must read on, because of an error, for example
+        std::uint64_t line = 0;                   ///< where the next piece begins
+        std::size_t end = std::string_view::npos; ///< its offset from the first piece; npos after an error
     };
 
-    /// Reads the slices from `position` to the end of the stack.
-    XmlSkimmed read_slices(std::size_t position) {
-        const bool is_slice = slices_ && depth_ == stack_depth_ && !slices_->in_polygon();
-        if (!is_slice || !in_pieces_)
-            return {};
-        const bool alone = executor_.workers() == 1; // reads the stack as one piece, without a pass ahead
-        const std::string_view text =
-            text_.substr(position, alone ? std::string_view::npos : end_of_stack(position) - position);
-        // Slices probably begin like the first one, up to the value of an attribute.
-        constexpr std::size_t longest = 64;
-        const std::string_view first = text.substr(0, longest);
-        const TextPieces pieces =
-            alone ? TextPieces(text, {0})
-                  : find_text_pieces(text, 0, first.substr(0, first.find_first_of("\"'>")), executor_);
-        const std::uint64_t line = lines_.line(position);
-        std::size_t read_to = position;
+    /// Reads the slices from the cursor to the end of the stack, or to one that is not plain.
+    void read_slices(XmlCursor& cursor) {
+        if (!is_plain_ || !slices_ || depth_ != stack_depth_ || slices_->in_polygon())
+            return;
+        if (!limits_.in_memory() && !again_)
+            again_ = std::make_shared<const SliceText>(SliceText{
+                part_, text_.rfind('<'), {cursor.prefixes().begin(), cursor.prefixes().end()}, before_});
+        if (in_pieces_)
+            read_pieces_of_stack(cursor);
+        else
+            scan(cursor, text_.size(), *slices_, lines_);
+        depth_ += cursor.open().size();
+    }
+
+    void scan(XmlCursor& cursor, std::size_t limit, SliceReader& slices, LineCounter& lines) {
+        scan_slices(cursor, limit, before_, slices, lines, [&](std::size_t slice) {
+            if (again_)
+                slices.drop_contents(again_, slice);
+            executor_.check_cancelled();
+        });
+    }
+
+    void read_pieces_of_stack(XmlCursor& cursor) {
+        const std::size_t first = cursor.position();
+        const std::string_view text = text_.substr(first, end_of_stack(first) - first);
+        const TextPieces pieces = find_sibling_pieces(text, 0, executor_);
+        const std::uint64_t line = lines_.line(first);
         read_pieces(
             pieces.begins(), text.size(), executor_,
-            [&](std::size_t from, std::size_t limit) {
-                LineCounter lines(text_, position + from, line + pieces.line(from) - 1);
-                return read_piece(position, position + from, position + limit, lines);
+            [&](std::size_t begin, std::size_t limit) {
+                return read_piece(first, begin, limit, line + pieces.line(begin) - 1);
             },
             [&](Piece&& piece) {
-                in_pieces_ = in_pieces_ && slices_->append(std::move(piece.slices));
+                in_pieces_ = in_pieces_ && piece.end != std::string_view::npos &&
+                             slices_->append(std::move(piece.slices));
                 if (!in_pieces_)
                     return;
-                read_to = piece.read_to;
-                lines_ = LineCounter(text_, read_to, piece.line);
-                in_pieces_ = piece.sound;
+                cursor.move_to(first + piece.end, piece.line - line);
+                lines_ = LineCounter(text_, first + piece.end, piece.line);
             });
-        return {read_to - position, lines_.line(read_to) - line};
     }
 
     /// Returns the probable end of the stack around `position`.
     std::size_t end_of_stack(std::size_t position) {
-        const std::string tag = "</" + tags_.stack;
+        const std::string tag = fmt::format("</{}slicestack", before_);
         if (!stack_ends_)
             stack_ends_.emplace(find_text_pieces(text_, 0, tag, executor_));
         // They are the first ones in each chunk; that of `position` may contain others.
@@ -543,49 +480,43 @@ class SliceModelReader {
         return nearer == std::string_view::npos ? end : position + nearer;
     }
 
-    /// Reads slices from `begin` to the first one at or after `limit`, or to the end of the stack. The first
-    /// piece begins at `first`.
-    Piece read_piece(std::size_t first, std::size_t begin, std::size_t limit, LineCounter& lines) {
+    /// Reads slices from `begin` on, in line `line`, to the first one at or after `limit`, or to the end of
+    /// the stack. These are offsets from the first piece.
+    Piece read_piece(std::size_t first, std::size_t begin, std::size_t limit, std::uint64_t line) {
+        executor_.check_cancelled();
         Piece piece{.slices = SliceReader(-std::numeric_limits<double>::infinity(), limits_)};
-        std::size_t at = begin;
-        const auto read_plain = [&] {
-            PlainSlice slice(text_, at, last_tag_, prefixes_, tags_, piece.slices, lines);
-            if (!slice.read())
-                return false;
-            if (again_)
-                piece.slices.drop_contents(again_, at);
-            at = slice.end();
-            return true;
-        };
-        const auto parse = [&] {
-            const std::size_t end = std::min(limit, at + layer_piece_bytes);
-            at = parse_part_elements(part_, at, end, tags_.stack, *spaces_, lines.line(at),
-                                     {.start =
-                                          [&](const ThreeMfElement& element) {
-                                              if (!is_of_slices(element.name))
-                                                  element.fail("an element that is not in a slice", "slices");
-                                              piece.slices.start(element);
-                                          },
-                                      .end =
-                                          [&](XmlName name) {
-                                              piece.slices.end(name);
-                                          }},
-                                     executor_);
-            return true;
-        };
-        while (at < limit) {
-            executor_.check_cancelled();
-            if (piece.slices.try_to(read_plain))
-                continue;
-            const bool stack_ends = text_.substr(at).starts_with("</");
-            piece.sound = stack_ends || piece.slices.try_to(parse);
-            if (stack_ends || !piece.sound)
-                break;
+        LineCounter lines(text_, first + begin, line);
+        std::size_t depth = 0;
+        const ThreeMfHandlers handlers{.start =
+                                           [&](const ThreeMfElement& element) {
+                                               if (!is_of_slices(element.name))
+                                                   element.fail("an element that is not in a slice",
+                                                                "slices");
+                                               ++depth;
+                                               piece.slices.start(element);
+                                           },
+                                       .end =
+                                           [&](XmlName name) {
+                                               --depth;
+                                               piece.slices.end(name);
+                                           },
+                                       .many = tag_,
+                                       .skim =
+                                           [&](XmlCursor& cursor) {
+                                               if (depth == 0 && !piece.slices.in_polygon())
+                                                   scan(cursor, first + limit, piece.slices, lines);
+                                               depth += cursor.open().size();
+                                           }};
+        try {
+            const std::size_t end =
+                parse_part_elements(part_, first + begin, first + limit, before_ + "slicestack", *spaces_,
+                                    line, handlers, executor_);
+            piece.line = lines.line(end);
+            piece.end = end - first;
+        } catch (const Error& error) {
+            if (error.kind() != ErrorKind::input)
+                throw;
         }
-        piece.read_to = at;
-        piece.line = lines.line(at);
-        if (at >= limit)
-            piece.end = at - first;
         return piece;
     }
 
@@ -597,17 +528,17 @@ class SliceModelReader {
 
     const ByteSource& part_;
     std::string_view text_;
-    std::size_t last_tag_ = text_.rfind('<');
     std::optional<std::string_view> prefix_ = slice_prefix(text_);
-    SliceTags tags_{prefix_.value_or("")};
+    std::string before_ = prefix_.value_or("").empty() ? std::string() : fmt::format("{}:", *prefix_);
+    std::string tag_ = fmt::format("<{}slice", before_);
     const FindSliceStack& find_;
     ReadLimits& limits_;
     Executor& executor_;
     LineCounter lines_{text_};
     std::optional<TextPieces> stack_ends_; ///< offsets where stacks probably end
     const ThreeMfSpaces* spaces_ = nullptr;
-    std::vector<std::string> prefixes_; ///< of attributes
     std::shared_ptr<const SliceText> again_; ///< null if layers are kept in memory
+    bool is_plain_ = false;                  ///< the root element gives the prefix to slices
     bool in_pieces_ = false;
     std::size_t depth_ = 0;
     std::size_t stack_depth_ = 0;
@@ -632,9 +563,9 @@ RawLayer Slice::read_again(ReadLimits& limits) const {
     assert(text);
     SliceReader slices(-std::numeric_limits<double>::infinity(), limits);
     LineCounter lines(text->part.text());
-    PlainSlice slice(text->part.text(), raw.begin, text->last_tag, text->prefixes, text->tags, slices, lines);
-    [[maybe_unused]] const bool is_plain = slice.read();
-    assert(is_plain);
+    XmlCursor cursor(text->part.text(), raw.begin, text->last_tag, text->prefixes);
+    scan_slices(cursor, raw.begin + 1, text->before, slices, lines, [](std::size_t) {});
+    assert(slices.stack()->slices.size() == 1);
     return std::move(slices.stack()->slices.front().raw);
 }
 

@@ -5,9 +5,8 @@
 #include "container/text_position.hpp"
 #include "container/xml.hpp"
 #include "core/lower_case.hpp"
-#include "read/decimal_text.hpp"
 #include "read/mesh_document.hpp"
-#include "read/plain_elements.hpp"
+#include "read/plain_values.hpp"
 #include "read/read_limits.hpp"
 #include "read/three_mf_part.hpp"
 #include "read/three_mf_properties.hpp"
@@ -159,9 +158,6 @@ class ModelReader final : MeshDocumentReader<ThreeMfModel, ModelElement> {
         if (is_root_ && !seen_.contains(Where::build))
             fail("found no <build>, expected one in <model>");
         model.title = printable(trimmed(model.title), longest_model_title);
-        model.prefixes = plain_prefixes(spaces_);
-        for (ThreeMfObject& object : model.objects)
-            object.text.prefixes = model.prefixes; // valid even after the model is moved
         return take();
     }
 
@@ -436,36 +432,24 @@ class ModelReader final : MeshDocumentReader<ThreeMfModel, ModelElement> {
 };
 
 bool read_model_vertices(std::string_view run, const MeshText& text, std::span<Point3> vertices) {
-    PlainElements elements(run, text.prefixes);
+    XmlCursor cursor = cursor_over(run, text.prefixes);
     for (Point3& vertex : vertices) {
+        constexpr std::array<std::string_view, 3> names = {"x", "y", "z"};
         std::array<double, 3> numbers{};
-        const auto read = [&](const char* name, std::size_t length, const char* value) -> PlainValue {
-            if (length != 1 || *name < 'x' || *name > 'z')
-                return {};
-            const int axis = *name - 'x';
-            const char* const end = read_decimal(value, elements.end(), numbers[axis]);
-            return {axis, std::abs(numbers[axis]) <= farthest_coordinate ? end : nullptr};
-        };
-        if (!elements.take("<vertex", 3, read))
+        if (!cursor.take("<vertex") || take_values(cursor, names, numbers) != XmlTagEnd::element)
             return false;
         vertex = {numbers[0], numbers[1], numbers[2]};
     }
-    return elements.done();
+    return cursor.next() == cursor.end();
 }
 
 bool read_model_triangles(std::string_view run, const MeshText& text, std::span<TriangleIndices> triangles) {
-    PlainElements elements(run, text.prefixes);
-    for (TriangleIndices& corners : triangles) {
-        const auto read = [&](const char* name, std::size_t length, const char* value) -> PlainValue {
-            if (length != 2 || name[0] != 'v' || name[1] < '1' || name[1] > '3')
-                return {};
-            const int corner = name[1] - '1';
-            return {corner, read_index(value, elements.end(), corners[corner])};
-        };
-        if (!elements.take("<triangle", 3, read))
+    XmlCursor cursor = cursor_over(run, text.prefixes);
+    constexpr std::array<std::string_view, 3> names = {"v1", "v2", "v3"};
+    for (TriangleIndices& corners : triangles)
+        if (!cursor.take("<triangle") || take_values(cursor, names, corners) != XmlTagEnd::element)
             return false;
-    }
-    return elements.done();
+    return cursor.next() == cursor.end();
 }
 
 } // namespace

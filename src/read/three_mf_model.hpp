@@ -47,8 +47,7 @@ struct ThreeMfModel {
     std::string title;
     std::vector<ThreeMfObject> objects;
     std::vector<ThreeMfUse> items;
-    std::vector<std::string> prefixes; ///< declared by the root element, ascending
-    std::vector<std::string> remarks;  ///< violations of the format's rules, one line each
+    std::vector<std::string> remarks; ///< violations of the format's rules, one line each
 };
 
 /// Reads a model part. If `skim` is not null, vertices and triangles in plain sequences are left unread in

@@ -5,8 +5,7 @@
 #include "container/text_position.hpp"
 #include "core/executor.hpp"
 #include "mesh/singular.hpp"
-#include "read/decimal_text.hpp"
-#include "read/mesh_text.hpp"
+#include "read/plain_values.hpp"
 #include "read/read_limits.hpp"
 #include "read/three_mf_terms.hpp"
 
@@ -40,6 +39,27 @@ constexpr std::array<std::pair<std::string_view, ThreeMfObjectType>, 5> types = 
     {"surface", ThreeMfObjectType::surface},
     {"other", ThreeMfObjectType::other},
 }};
+
+/// `line` is the first one of the text.
+XmlHandlers xml_handlers(const ByteSource& part, const ThreeMfHandlers& handlers, const ThreeMfSpaces& spaces,
+                         std::uint64_t line, const Executor& executor) {
+    XmlHandlers of_xml{
+        .start =
+            [&, line](XmlName name, const XmlAttributes& attributes, std::size_t line_of_text) {
+                handlers.start(
+                    {part.name, name, attributes, static_cast<std::size_t>(line + line_of_text - 1), spaces});
+            },
+        .end = handlers.end,
+        .progress =
+            [&](std::size_t) {
+                executor.check_cancelled();
+            }};
+    if (handlers.skim) {
+        of_xml.many = {handlers.many};
+        of_xml.skim = handlers.skim;
+    }
+    return of_xml;
+}
 
 } // namespace
 
@@ -200,28 +220,16 @@ ByteSource unpack_part(const ZipReader& package, const std::string& name, ReadLi
 void parse_part(const ByteSource& part, const ThreeMfHandlers& handlers, const Executor& executor) {
     ThreeMfSpaces spaces;
     bool in_root = false;
-    bool usual_spaces = true;
-    XmlHandlers of_xml;
+    XmlHandlers of_xml = xml_handlers(part, handlers, spaces, 1, executor);
     of_xml.declare = [&](std::string_view prefix, std::string_view space) {
         if (!in_root)
             spaces.emplace(prefix, space);
-        usual_spaces =
-            usual_spaces && !in_root && space.find_first_of("&<\"\t\r\n") == std::string_view::npos;
     };
-    of_xml.start = [&](XmlName name, const XmlAttributes& attributes, std::size_t line) {
+    of_xml.start = [&, start = of_xml.start](XmlName name, const XmlAttributes& attributes,
+                                             std::size_t line) {
         in_root = true;
-        handlers.start({part.name, name, attributes, line, spaces});
+        start(name, attributes, line);
     };
-    of_xml.end = handlers.end;
-    of_xml.progress = [&](std::size_t) {
-        executor.check_cancelled();
-    };
-    if (!handlers.many.empty()) {
-        of_xml.many = {handlers.many};
-        of_xml.skim = [&](std::string_view, std::size_t position) {
-            return usual_spaces ? handlers.skim(position) : XmlSkimmed();
-        };
-    }
     parse_xml(part.text(), part.name, of_xml, three_mf_rules);
 }
 
@@ -232,28 +240,8 @@ std::size_t parse_part_elements(const ByteSource& part, std::size_t begin, std::
     for (const auto& [prefix, space] : spaces)
         tag += fmt::format(" xmlns{}{}=\"{}\"", prefix.empty() ? "" : ":", prefix, space);
     tag += '>';
-    XmlHandlers of_xml;
-    of_xml.start = [&](XmlName name, const XmlAttributes& attributes, std::size_t line_from_begin) {
-        const auto line_of_part = static_cast<std::size_t>(line + line_from_begin - 1);
-        handlers.start({part.name, name, attributes, line_of_part, spaces});
-    };
-    of_xml.end = handlers.end;
-    of_xml.progress = [&](std::size_t) {
-        executor.check_cancelled();
-    };
-    return parse_xml_elements(part.text(), begin, limit, tag, part.name, of_xml, three_mf_rules);
-}
-
-std::vector<std::string> plain_prefixes(const ThreeMfSpaces& spaces) {
-    std::vector<std::string> prefixes;
-    for (const auto& declared : spaces) {
-        const auto same_space = [&](const auto& other) {
-            return !other.first.empty() && other.first != declared.first && other.second == declared.second;
-        };
-        if (!declared.first.empty() && std::none_of(spaces.begin(), spaces.end(), same_space))
-            prefixes.push_back(declared.first);
-    }
-    return prefixes;
+    return parse_xml_elements(part.text(), begin, limit, tag, part.name,
+                              xml_handlers(part, handlers, spaces, line, executor), three_mf_rules);
 }
 
 } // namespace lamella

@@ -10,11 +10,13 @@
 #include "read/read_limits.hpp"
 #include "system/byte_source.hpp"
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <map>
 #include <set>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -86,6 +88,20 @@ struct ThreeMfElement {
     /// Returns the contents of a <component> or an <item> of the build, in a part with this unit.
     [[nodiscard]] ThreeMfUse use(double unit_mm) const;
 
+    /// Reads the values of the attributes `names`, and returns true.
+    template <std::size_t count>
+    bool take(const std::array<std::string_view, count>& names, std::array<double, count>& values) const {
+        for (std::size_t k = 0; k < count; ++k)
+            values[k] = (*this)[names[k]].number();
+        return true;
+    }
+    template <std::size_t count>
+    bool take(const std::array<std::string_view, count>& names, std::span<std::uint32_t> values) const {
+        for (std::size_t k = 0; k < count; ++k)
+            values[k] = (*this)[names[k]].index();
+        return true;
+    }
+
     /// Throws Error{input}: "x, part 'y', line 7: found `found`, expected `expected`".
     [[noreturn]] void fail(std::string_view found, std::string_view expected) const;
     [[nodiscard]] auto location() const { return at_line(line); }
@@ -105,25 +121,20 @@ struct ThreeMfHandlers {
     std::function<void(const ThreeMfElement&)> start;
     std::function<void(XmlName)> end = [](XmlName) {
     };
-    /// Beginning of the tags of numerous elements, and a function that reads such elements at an offset; see
-    /// XmlHandlers. It is called only if all namespaces so far are declared by the root element, and can be
-    /// written without escapes.
+    /// Beginning of the tags of numerous elements, and a function that reads them; see XmlHandlers.
     std::string_view many = {};
-    std::function<XmlSkimmed(std::size_t position)> skim = {};
+    std::function<void(XmlCursor&)> skim = {};
 };
 
 /// Parses a part.
 void parse_part(const ByteSource& part, const ThreeMfHandlers& handlers, const Executor& executor);
 
-/// Parses elements of a part from `begin`, which is on line `line`, as parse_xml_elements does, where a part
-/// may be skimmed. `parent` is the name of their parent as written.
+/// Parses elements of a part from `begin`, which is on line `line`, as parse_xml_elements does. `parent` is
+/// the name of their parent as written. No namespace of `spaces` may need references.
 [[nodiscard]] std::size_t parse_part_elements(const ByteSource& part, std::size_t begin, std::size_t limit,
                                               std::string_view parent, const ThreeMfSpaces& spaces,
                                               std::uint64_t line, const ThreeMfHandlers& handlers,
                                               const Executor& executor);
-
-/// Returns the prefixes that attributes may have without being the same as another attribute, ascending.
-[[nodiscard]] std::vector<std::string> plain_prefixes(const ThreeMfSpaces& spaces);
 
 /// Rules of XML that each part of a 3MF package must satisfy.
 inline constexpr XmlRules three_mf_rules{.namespaces = true, .utf8_only = true, .no_document_type = true};

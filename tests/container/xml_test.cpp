@@ -142,8 +142,7 @@ TEST(Xml, ReadsTokensOf64MBAndRefusesLongerOnes) {
         Told told;
         if (skim) { // the tag in the comment sends the parser there
             told.handlers.many = {"<v"};
-            told.handlers.skim = [](std::string_view, std::size_t) -> XmlSkimmed {
-                return {};
+            told.handlers.skim = [](XmlCursor&) {
             };
         }
         parse_xml(document(most), "x.xml", told.handlers);
@@ -173,12 +172,12 @@ struct Skimmer : Told {
 
     Skimmer() {
         handlers.many = {"<v"};
-        handlers.skim = [this](std::string_view document, std::size_t position) -> XmlSkimmed {
-            const std::size_t end = document.find("</", position);
+        handlers.skim = [this](XmlCursor& cursor) {
+            const std::size_t end = cursor.text().find("</", cursor.position());
             if (end == std::string_view::npos)
-                return {};
-            skimmed += fmt::format("[{}]", document.substr(position, end - position));
-            return {end - position};
+                return;
+            skimmed += fmt::format("[{}]", cursor.text().substr(cursor.position(), end - cursor.position()));
+            cursor.move_to(end);
         };
     }
 };
@@ -195,11 +194,12 @@ TEST(Xml, LinesAreRightBehindSkimmedElementsWithLineEndsOfEveryKind) {
     for (const bool known : {false, true}) {
         Skimmer skimmer;
         const auto skim = skimmer.handlers.skim;
-        skimmer.handlers.skim = [&](std::string_view document, std::size_t position) {
-            XmlSkimmed skimmed = skim(document, position);
+        skimmer.handlers.skim = [&](XmlCursor& cursor) {
+            const std::size_t begin = cursor.position();
+            skim(cursor);
+            const std::size_t end = cursor.position();
             if (known)
-                skimmed.lines = line_at(document.substr(position), skimmed.bytes) - 1;
-            return skimmed;
+                cursor.move_to(end, line_at(cursor.text().substr(begin), end - begin) - 1);
         };
         parse_xml("<a>\r<r>\r\n<v/>\r\n<v/>\r<v/>\n\r</r>\n<x/></a>", "x.xml", skimmer.handlers);
         EXPECT_EQ(skimmer.events, "1:<a>2:<r></r>8:<x></x></a>");
@@ -236,8 +236,8 @@ TEST(Xml, ElementsOfTheRootReportWhereTheyBegin) {
         Told told;
         if (skim) {
             told.handlers.many = {"<v"};
-            told.handlers.skim = [](std::string_view, std::size_t) -> XmlSkimmed {
-                return {std::string_view("<v/>").size()};
+            told.handlers.skim = [](XmlCursor& cursor) {
+                EXPECT_TRUE(cursor.take("<v/>"));
             };
         }
         std::vector<std::size_t> found;

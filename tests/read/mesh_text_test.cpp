@@ -166,9 +166,12 @@ TEST(MeshText, TakesARunUpToTheEndOfItsList) {
     const std::string_view document = "<vertices><vertex/><vertex/></vertices>";
     std::vector<std::string_view> runs;
     Executor executor({.threads = 1});
-    EXPECT_EQ(take_run(document, 10, "</vertices", runs, executor).bytes, 18U);
+    XmlCursor cursor(document, 10, document.rfind('<'));
+    take_run(cursor, "</triangles", runs, executor);
+    EXPECT_EQ(cursor.position(), 10U);
+    take_run(cursor, "</vertices", runs, executor);
+    EXPECT_EQ(cursor.position(), 28U);
     EXPECT_EQ(runs, std::vector<std::string_view>{"<vertex/><vertex/>"});
-    EXPECT_EQ(take_run(document, 10, "</triangles", runs, executor).bytes, 0U);
     EXPECT_EQ(runs.size(), 1U);
 }
 
@@ -186,11 +189,14 @@ TEST(MeshText, TakesLongRunsAlikeWithAnyNumberOfThreads) {
         for (const unsigned threads : {1U, 2U, 5U}) {
             Executor executor({.threads = threads});
             std::vector<std::string_view> runs;
-            const XmlSkimmed run = take_run(document, location, "</v", runs, executor);
-            EXPECT_EQ(run.bytes, length) << threads;
-            EXPECT_EQ(run.lines, line_at(std::string_view(document).substr(location), length) - 1) << threads;
+            XmlCursor cursor(document, location, document.rfind('<'));
+            take_run(cursor, "</w", runs, executor);
+            EXPECT_EQ(cursor.position(), location);
+            take_run(cursor, "</v", runs, executor);
+            EXPECT_EQ(cursor.position(), location + length) << threads;
+            EXPECT_EQ(cursor.lines(), line_at(std::string_view(document).substr(location), length) - 1)
+                << threads;
             EXPECT_EQ(runs.size(), 1U);
-            EXPECT_EQ(take_run(document, location, "</w", runs, executor).bytes, 0U);
         }
     }
 }
