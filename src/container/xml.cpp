@@ -168,14 +168,14 @@ class Parse {
             if (++parse.declared_ > most_attributes)
                 parse.fail(
                     fmt::format("found an element that declares more than {} namespaces", most_attributes));
-            const std::string_view prefix_text = prefix == nullptr ? "" : prefix;
-            const std::string_view space_text = space == nullptr ? "" : space;
-            if (parse.depth_ == 0)
-                parse.spaces_.emplace(prefix_text, space_text);
-            else
+            if (parse.depth_ != 0) {
                 ++parse.inner_spaces_;
+                return;
+            }
+            const auto& [known, uri] =
+                *parse.spaces_.emplace(prefix == nullptr ? "" : prefix, space == nullptr ? "" : space).first;
             if (parse.handlers_.declare)
-                parse.handlers_.declare(prefix_text, space_text);
+                parse.handlers_.declare(known, uri);
         });
     }
 

@@ -48,8 +48,8 @@ struct XmlHandlers {
     std::function<void(std::size_t bytes)> hold = {};
     /// Text between tags; one text may take several calls.
     std::function<void(std::string_view text)> text = {};
-    /// Called with a prefix (empty for the default namespace) and its namespace, before `start` of the
-    /// element that declares them.
+    /// Called with each prefix (empty for the default namespace) and namespace that the root element declares,
+    /// before its `start`.
     std::function<void(std::string_view prefix, std::string_view space)> declare = {};
 
     /// Called before `start` of each element within the root, or, by parse_xml_elements, within the parent,

@@ -18,12 +18,6 @@
 
 namespace lamella {
 
-/// The result of reading an attribute.
-struct XmlValue {
-    int index = -1;            ///< index among the wanted attributes; -1 for others, which are skipped
-    const char* end = nullptr; ///< end of the value; null if the value is invalid
-};
-
 /// The end of a tag: that of a whole element, or of its start tag; `none` if the tag is not plain.
 enum class XmlTagEnd { none, element, start_tag };
 
@@ -86,10 +80,13 @@ class XmlCursor {
         return to != nullptr;
     }
 
-    /// Reads the rest of a tag, and each of its `wanted` attributes by calling read(name, length of the name,
-    /// value), which returns an XmlValue. The tag is not plain if it lacks one of these attributes.
-    template <class Read>
-    XmlTagEnd take_attributes(int wanted, const Read& read) {
+    /// Reads the rest of a tag with the attributes `names`, and perhaps others, by calling read(k, value) for
+    /// the attribute names[k], which returns the end of the value, or null. The tag is not plain if it lacks
+    /// one of them.
+    template <std::size_t count, class Read>
+    XmlTagEnd take_attributes(const std::array<std::string_view, count>& names, const Read& read) {
+        if (const XmlTagEnd end = take_usual_attributes(names, read); end != XmlTagEnd::none)
+            return end;
         unsigned seen = 0;
         std::size_t others = 0;
         for (;;) {
@@ -99,58 +96,29 @@ class XmlCursor {
             const bool is_empty = *at == '/';
             if (is_empty || *at == '>') {
                 at_ = at + (is_empty ? 2 : 1);
-                const bool plain = at_[-1] == '>' && seen == (1U << wanted) - 1;
+                const bool plain = at_[-1] == '>' && seen == (1U << count) - 1;
                 return !plain ? XmlTagEnd::none : is_empty ? XmlTagEnd::element : XmlTagEnd::start_tag;
             }
             if (at == at_)
                 return XmlTagEnd::none; // no blank before the attribute
-            const char* const name = at;
+            const char* const begin = at;
             while (is_name(*at))
                 ++at;
-            const auto length = static_cast<std::size_t>(at - name);
-            if (length == 0 || *at != '=' || (at[1] != '"' && at[1] != '\''))
+            const std::string_view name(begin, static_cast<std::size_t>(at - begin));
+            if (name.empty() || *at != '=' || (at[1] != '"' && at[1] != '\''))
                 return XmlTagEnd::none;
             const char quote = at[1];
-            const XmlValue value = read(name, length, at + 2);
-            const char* stop = value.end;
-            if (value.index < 0) {
-                stop = is_new({name, length}, others) ? end_of_value(at + 2, quote) : nullptr;
-            } else {
-                if ((seen >> value.index & 1) != 0)
-                    return XmlTagEnd::none;
-                seen |= 1U << value.index;
-            }
+            std::size_t k = 0;
+            while (k < count && !same_name(name, names[k]))
+                ++k;
+            if (k < count ? (seen >> k & 1) != 0 : !is_new(name, others))
+                return XmlTagEnd::none;
+            seen |= k < count ? 1U << k : 0;
+            const char* const stop = k < count ? read(k, at + 2) : end_of_value(at + 2, quote);
             if (stop == nullptr || *stop != quote)
                 return XmlTagEnd::none;
             at_ = stop + 1;
         }
-    }
-
-    /// Reads the rest of a tag with the attributes `names` alone, in this order and written as usual, which
-    /// take_attributes reads, too, in twice the time: read(k, value) returns the end of a value, or null. If
-    /// the tag is not of this form, returns `none` and stays where it is.
-    template <std::size_t count, class Read>
-    XmlTagEnd take_usual(const std::array<std::string_view, count>& names, const Read& read) {
-        const char* at = at_;
-        for (std::size_t k = 0; k < count; ++k) {
-            if (*at++ != ' ')
-                return XmlTagEnd::none;
-            for (const char c : names[k])
-                if (*at++ != c)
-                    return XmlTagEnd::none;
-            if (at[0] != '=' || at[1] != '"')
-                return XmlTagEnd::none;
-            at = read(k, at + 2);
-            if (at == nullptr || *at++ != '"')
-                return XmlTagEnd::none;
-        }
-        at += *at == ' ' ? 1 : 0;
-        const bool is_empty = *at == '/';
-        at += is_empty ? 1 : 0;
-        if (*at != '>')
-            return XmlTagEnd::none;
-        at_ = at + 1;
-        return is_empty ? XmlTagEnd::element : XmlTagEnd::start_tag;
     }
 
     /// Reads elements up to the first tag that is not plain, the first element at or after `limit`, or the
@@ -190,6 +158,32 @@ class XmlCursor {
     }
 
   private:
+    /// Reads a tag with the attributes `names` alone, in this order, written as usual, which takes half the
+    /// time. Stays where it is if the tag is not of this form.
+    template <std::size_t count, class Read>
+    XmlTagEnd take_usual_attributes(const std::array<std::string_view, count>& names, const Read& read) {
+        const char* at = at_;
+        for (std::size_t k = 0; k < count; ++k) {
+            if (*at++ != ' ')
+                return XmlTagEnd::none;
+            for (const char c : names[k])
+                if (*at++ != c)
+                    return XmlTagEnd::none;
+            if (at[0] != '=' || at[1] != '"')
+                return XmlTagEnd::none;
+            at = read(k, at + 2);
+            if (at == nullptr || *at++ != '"')
+                return XmlTagEnd::none;
+        }
+        at += *at == ' ' ? 1 : 0;
+        const bool is_empty = *at == '/';
+        at += is_empty ? 1 : 0;
+        if (*at != '>')
+            return XmlTagEnd::none;
+        at_ = at + 1;
+        return is_empty ? XmlTagEnd::element : XmlTagEnd::start_tag;
+    }
+
     static constexpr std::size_t most_open = 16; ///< the parser knows how deep elements may be nested
 
     static bool is_blank(char c) { return c == ' ' || c == '\n' || c == '\r' || c == '\t'; }

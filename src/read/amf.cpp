@@ -8,7 +8,6 @@
 #include "read/amf_document.hpp"
 #include "read/assembly.hpp"
 #include "read/body_selection.hpp"
-#include "read/mesh_document.hpp"
 #include "read/mesh_readers.hpp"
 #include "read/read_limits.hpp"
 #include "read/remarks.hpp"
@@ -78,46 +77,14 @@ class AmfReader {
 
     void read_document() {
         ProgressMeter progress(execution_, Stage::read, source_.text().size());
-        document_ = skimmed_or_parsed([&](bool skim) {
-            return parsed(skim, [&](std::size_t read) {
+        document_ =
+            read_amf_document(source_.text(), source_.name, executor_, limits_, [&](std::size_t read) {
                 executor_.check_cancelled();
-                progress.add(skim ? read : 0);
+                progress.add(read);
             });
-        });
         progress.finish();
-        AmfDocument* const document = &document_;
-        if (read_skimmed_meshes(std::span(&document, 1), amf_text_form(), limits_, executor_).front())
-            count_triangles_of_volumes();
-        else
-            document_ = parsed(false, [&](std::size_t) { executor_.check_cancelled(); });
         source_.bytes = {};
         source_.owner.reset();
-    }
-
-    /// Converts the ranges of volumes of skimmed meshes, which count sequences of triangles, to ranges of
-    /// triangles.
-    void count_triangles_of_volumes() {
-        for (AmfObject& object : document_.objects) {
-            if (has_parts_only(object))
-                continue;
-            std::vector<std::uint64_t> before{0}; // number of triangles before each run
-            for (const std::string_view run : object.text.triangles)
-                before.push_back(before.back() + elements_in(run, amf_text_form().triangle));
-            for (VolumeRange& volume : object.volumes) {
-                volume.begin = before.at(volume.begin);
-                volume.end = before.at(volume.end);
-            }
-        }
-    }
-
-    static bool has_parts_only(const AmfObject& object) {
-        return std::all_of(object.volumes.begin(), object.volumes.end(),
-                           [](const VolumeRange& volume) { return volume.role == MeshRole::part; });
-    }
-
-    AmfDocument parsed(bool skim, const std::function<void(std::size_t)>& progress) {
-        return read_amf_document(source_.text(), source_.name, skim ? &executor_ : nullptr, limits_,
-                                 progress);
     }
 
     /// Makes a node of each object and each constellation.
@@ -210,8 +177,9 @@ class AmfReader {
                 continue;
             }
             degenerate += degenerate_triangles(object.mesh);
-            if (has_parts_only(object))
-                object.volumes.clear(); // their ranges are not counted in triangles
+            if (std::all_of(object.volumes.begin(), object.volumes.end(),
+                            [](const VolumeRange& volume) { return volume.role == MeshRole::part; }))
+                object.volumes.clear();
             nodes_[i].is_body = true;
             for (RoleMesh& mesh : divided_by_role(std::move(object.mesh), object.volumes, object.name,
                                                   selection_, file_.bodies, limits_)) {

@@ -65,33 +65,26 @@ constexpr std::array units = {
     Unit{"\xce\xbcm", 0.001},
 };
 
-bool read_vertices(std::string_view run, const MeshText& text, std::span<Point3> vertices) {
-    XmlCursor tags = cursor_over(run, text.prefixes);
-    for (Point3& v : vertices)
-        if (!(tags.take("<vertex>") && tags.take("<coordinates>") && tags.take("<x>") &&
-              take_value(tags, v.x) && tags.take("</x>") && tags.take("<y>") && take_value(tags, v.y) &&
-              tags.take("</y>") && tags.take("<z>") && take_value(tags, v.z) && tags.take("</z>") &&
-              tags.take("</coordinates>") && tags.take("</vertex>")))
-            return false;
-    return tags.next() == tags.end();
+std::size_t read_vertices(XmlCursor& tags, std::size_t, std::span<Point3> vertices) {
+    return take_items(tags, vertices, [&](Point3& v) {
+        return tags.take("<vertex>") && tags.take("<coordinates>") && tags.take("<x>") &&
+               take_value(tags, v.x) && tags.take("</x>") && tags.take("<y>") && take_value(tags, v.y) &&
+               tags.take("</y>") && tags.take("<z>") && take_value(tags, v.z) && tags.take("</z>") &&
+               tags.take("</coordinates>") && tags.take("</vertex>");
+    });
 }
 
-bool read_triangles(std::string_view run, const MeshText& text, std::span<TriangleIndices> triangles) {
-    XmlCursor tags = cursor_over(run, text.prefixes);
-    for (TriangleIndices& t : triangles)
-        if (!(tags.take("<triangle>") && tags.take("<v1>") && take_value(tags, t[0]) && tags.take("</v1>") &&
-              tags.take("<v2>") && take_value(tags, t[1]) && tags.take("</v2>") && tags.take("<v3>") &&
-              take_value(tags, t[2]) && tags.take("</v3>") && tags.take("</triangle>")))
-            return false;
-    return tags.next() == tags.end();
+std::size_t read_triangles(XmlCursor& tags, std::size_t vertices, std::span<TriangleIndices> triangles) {
+    return take_items(tags, triangles, [&](TriangleIndices& t) {
+        return tags.take("<triangle>") && tags.take("<v1>") && take_value(tags, t[0]) && tags.take("</v1>") &&
+               tags.take("<v2>") && take_value(tags, t[1]) && tags.take("</v2>") && tags.take("<v3>") &&
+               take_value(tags, t[2]) && tags.take("</v3>") && tags.take("</triangle>") &&
+               std::max({t[0], t[1], t[2]}) < vertices;
+    });
 }
 
-constexpr MeshTextForm text_form{
-    {"<vertex", "</vertices", 10,
-     std::string_view("<vertex><coordinates><x>0</x><y>0</y><z>0</z></coordinates></vertex>").size(),
-     read_vertices},
-    {"<triangle", "</volume", 8,
-     std::string_view("<triangle><v1>0</v1><v2>1</v2><v3>2</v3></triangle>").size(), read_triangles}};
+constexpr MeshTextForm text_form{{"<vertex", "</vertices", read_vertices},
+                                 {"<triangle", "</volume", read_triangles}};
 
 /// Names of the numbers of an instance.
 constexpr std::array<std::string_view, 14> instance_numbers = {
@@ -128,8 +121,8 @@ struct AmfElement {
 
 class AmfDocumentReader final : MeshDocumentReader<AmfDocument, AmfTag> {
   public:
-    AmfDocumentReader(const std::string& name, Executor* skim, ReadLimits& limits)
-        : MeshDocumentReader(name, "", skim, limits), skim_(skim != nullptr) {}
+    AmfDocumentReader(const std::string& name, Executor& executor, ReadLimits& limits)
+        : MeshDocumentReader(name, "", executor, limits) {}
 
     AmfDocument read(std::string_view text, const std::function<void(std::size_t)>& progress) {
         XmlHandlers handlers;
@@ -207,7 +200,7 @@ class AmfDocumentReader final : MeshDocumentReader<AmfDocument, AmfTag> {
     }
 
     Where start_object(const AmfElement& element) {
-        append(document().objects, AmfObject{required(element, "id"), {}, line(), false, {}, {}, {}});
+        append(document().objects, AmfObject{required(element, "id"), {}, line(), false, {}, {}});
         return Where::object;
     }
 
@@ -219,16 +212,9 @@ class AmfDocumentReader final : MeshDocumentReader<AmfDocument, AmfTag> {
 
     Where start_volume(const AmfElement& element) {
         const MeshRole role = lower_case(element["type"]) == "support" ? MeshRole::support : MeshRole::part;
-        append(object().volumes, VolumeRange{triangles_of_object(), 0, role});
+        append(object().volumes, VolumeRange{object().mesh.triangles.size(), 0, role});
         return Where::triangles;
     }
-
-    /// Returns the number of triangles, or of skimmed sequences of triangles, as `AmfObject::volumes` counts.
-    [[nodiscard]] std::uint64_t triangles_of_object() {
-        return skim_ ? object().text.triangles.size() : object().mesh.triangles.size();
-    }
-
-    void end_volume() { object().volumes.back().end = triangles_of_object(); }
 
     Where pass_over_bend(const AmfElement&) {
         document().bent.note(line());
@@ -272,7 +258,7 @@ class AmfDocumentReader final : MeshDocumentReader<AmfDocument, AmfTag> {
             end_metadata(trimmed(text_));
             break;
         case Where::triangles:
-            end_volume();
+            object().volumes.back().end = object().mesh.triangles.size();
             break;
         case Where::vertex:
             if (std::exchange(seen_, 0) != all_three)
@@ -372,7 +358,6 @@ class AmfDocumentReader final : MeshDocumentReader<AmfDocument, AmfTag> {
 
     static constexpr unsigned all_three = 7;
 
-    bool skim_;
     std::string kind_; ///< element of the current number, or type of the metadata
     std::string text_;
     unsigned seen_ = 0; ///< coordinates or corners read so far
@@ -386,9 +371,9 @@ const MeshTextForm& amf_text_form() noexcept {
     return text_form;
 }
 
-AmfDocument read_amf_document(std::string_view document, const std::string& name, Executor* skim,
+AmfDocument read_amf_document(std::string_view document, const std::string& name, Executor& executor,
                               ReadLimits& limits, const std::function<void(std::size_t)>& progress) {
-    return AmfDocumentReader(name, skim, limits).read(document, progress);
+    return AmfDocumentReader(name, executor, limits).read(document, progress);
 }
 
 } // namespace lamella

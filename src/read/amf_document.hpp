@@ -26,9 +26,6 @@ struct AmfObject {
     std::size_t line = 0;
     bool has_mesh = false;
     IndexedMesh mesh;
-    MeshText text;
-    /// Volumes, if any of them is not a part. Their ranges count the mesh's triangles or, in a skimmed
-    /// document, the sequences of triangles in `text`.
     std::vector<VolumeRange> volumes;
 };
 
@@ -59,13 +56,11 @@ struct AmfDocument {
     Occurrences bent; ///< curved edges and normals
 };
 
-/// Reads a document, whose name in errors is `name`. If `skim` is not null, vertices and
-/// triangles in plain sequences are left unread in `text`, and its threads find the ends of the sequences;
-/// other elements are then Error{input}. Throws Error{input} with the line if
-/// the document is not AMF, and Error{limit} as soon as a limit is exceeded. The result remains counted in
-/// the limits.
+/// Reads a document, whose name in errors is `name`; the threads read its meshes. Throws Error{input} with
+/// the line if the document is not AMF, and Error{limit} as soon as a limit is exceeded. The result remains
+/// counted in the limits.
 [[nodiscard]] AmfDocument read_amf_document(std::string_view document, const std::string& name,
-                                            Executor* skim, ReadLimits& limits,
+                                            Executor& executor, ReadLimits& limits,
                                             const std::function<void(std::size_t)>& progress);
 
 /// Returns the form in which AMF documents write meshes.

@@ -63,15 +63,6 @@ class TextPieces {
 [[nodiscard]] TextPieces find_text_pieces(std::string_view text, std::size_t begin, std::string_view word,
                                           Executor& executor);
 
-/// The same for elements of XML from `begin` on, which probably begin like the first one, up to the value of
-/// an attribute.
-[[nodiscard]] inline TextPieces find_sibling_pieces(std::string_view text, std::size_t begin,
-                                                    Executor& executor) {
-    constexpr std::size_t longest = 64;
-    const std::string_view first = text.substr(begin, longest);
-    return find_text_pieces(text, begin, first.substr(0, first.find_first_of("\"'>")), executor);
-}
-
 /// Calls parse(begin, limit) for each piece on all threads, and take(piece) in the order of the file. `parse`
 /// ends at the first end of a layer at or after `limit`, or at the end of the file, and returns the piece,
 /// whose member `end` is this offset. A piece is taken only if the one before it ended where it begins;
@@ -113,6 +104,52 @@ void read_pieces(const PieceBegins& begins, std::size_t end, Executor& executor,
             take(*std::move(parsed->piece));
         };
     });
+}
+
+/// Reads elements of XML that follow one another from `begin`, on line `line`, on. As it is not known where
+/// the last one ends, the text is divided a window at a time. parse(begin, limit, line) is as in read_pieces;
+/// if the end of a piece is npos, it cannot be read. take(piece, line at its end) returns whether reading
+/// goes on.
+template <class Parse, class Take>
+void read_sibling_pieces(std::string_view text, std::size_t begin, std::uint64_t line, Executor& executor,
+                         const Parse& parse, const Take& take) {
+    using Piece = decltype(parse(begin, begin, line));
+    struct Sibling {
+        Piece piece;
+        std::size_t end; ///< in the window
+        std::uint64_t lines = 0;
+    };
+    // The elements probably begin like the first one, up to the value of an attribute.
+    constexpr std::size_t longest = 64;
+    const std::string_view first = text.substr(begin, longest);
+    const std::string_view word = first.substr(0, first.find_first_of("\"'>"));
+    std::size_t window_bytes = layer_piece_bytes;
+    for (bool more = true; more;) {
+        const std::string_view window = text.substr(begin, window_bytes);
+        const TextPieces pieces = find_text_pieces(window, 0, word, executor);
+        std::size_t end = 0;
+        std::uint64_t lines = 0;
+        read_pieces(
+            pieces.begins(), window.size(), executor,
+            [&](std::size_t from, std::size_t to) {
+                Piece piece = parse(begin + from, begin + to, line + pieces.line(from) - 1);
+                Sibling sibling{std::move(piece), piece.end - begin};
+                if (piece.end != std::string_view::npos)
+                    sibling.lines = line_at(text.substr(begin + from), sibling.end - from) - 1;
+                return sibling;
+            },
+            [&](Sibling&& sibling) {
+                more = more && take(std::move(sibling.piece), line + lines + sibling.lines);
+                if (!more)
+                    return;
+                end = sibling.end;
+                lines += sibling.lines;
+            });
+        more = more && end >= window.size();
+        begin += end;
+        line += lines;
+        window_bytes = 16 * executor.workers() * layer_piece_bytes;
+    }
 }
 
 } // namespace lamella

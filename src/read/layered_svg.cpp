@@ -671,7 +671,7 @@ class SvgDocument {
         };
         handlers.many = {"<g"};
         handlers.skim = [&](XmlCursor& cursor) {
-            cursor.move_to(cursor.position() + read_layers(cursor.position()));
+            read_layers(cursor);
         };
         parse_xml(bytes_, name_, handlers);
         reader_.finish(file, bytes_.size(), executor_,
@@ -691,8 +691,7 @@ class SvgDocument {
   private:
     struct Piece {
         SvgReader reader;
-        bool sound = false;
-        std::size_t end = std::string_view::npos; ///< where the next piece begins, if it is sound
+        std::size_t end = std::string_view::npos; ///< where the next piece begins; npos after an error
     };
 
     /// `held` counts the bytes for the longest attribute.
@@ -716,25 +715,25 @@ class SvgDocument {
                     }};
     }
 
-    /// Reads the layers from `position` on. Returns the number of bytes that are read.
-    std::size_t read_layers(std::size_t position) {
+    /// Reads the layers from the cursor on.
+    void read_layers(XmlCursor& cursor) {
         if (!reader_.is_in_root() || !in_pieces_)
-            return 0;
+            return;
         const std::string parent = reader_.parent();
-        const TextPieces pieces = find_sibling_pieces(bytes_, position, executor_);
-        std::size_t end = position;
-        read_pieces(
-            pieces.begins(), bytes_.size(), executor_,
-            [&](std::size_t from, std::size_t limit) {
-                return read_piece(from, limit, parent, pieces.line(from));
+        const std::size_t begin = cursor.position();
+        const std::uint64_t first_line = line_at(bytes_, begin);
+        read_sibling_pieces(
+            bytes_, begin, first_line, executor_,
+            [&](std::size_t from, std::size_t limit, std::uint64_t line) {
+                return read_piece(from, limit, parent, line);
             },
-            [&](Piece&& piece) {
-                in_pieces_ = in_pieces_ && piece.sound && reader_.append(std::move(piece.reader));
+            [&](Piece&& piece, std::uint64_t line) {
+                in_pieces_ = piece.end != std::string_view::npos && reader_.append(std::move(piece.reader));
                 if (in_pieces_)
-                    end = piece.end;
+                    cursor.move_to(piece.end, line - first_line);
+                return in_pieces_;
             });
-        counted_ahead_ += end - position;
-        return end - position;
+        counted_ahead_ += cursor.position() - begin;
     }
 
     Piece read_piece(std::size_t begin, std::size_t limit, std::string_view parent, std::uint64_t line) {
@@ -747,7 +746,6 @@ class SvgDocument {
         };
         try {
             piece.end = parse_xml_elements(bytes_, begin, limit, parent, name_, handlers);
-            piece.sound = true;
             progress_.add(piece.end - begin);
         } catch (const Error& error) {
             if (error.kind() != ErrorKind::input)

@@ -1,7 +1,7 @@
 #pragma once
 
-// Reads XML documents with meshes, element by element. Sequences of vertices and triangles may be skipped and
-// left to `read/mesh_text`.
+// Reads XML documents with meshes, element by element, and lists of vertices and triangles by
+// `read/mesh_text`.
 
 #include "lamella/core/error.hpp"
 #include "lamella/mesh/indexed_mesh.hpp"
@@ -42,7 +42,7 @@ template <class Where, class Step, std::size_t count>
     return nullptr;
 }
 
-/// Reads a document; its `objects` have a `mesh` and a `text` each. A `Where` is the parent of an element:
+/// Reads a document; its `objects` have a `mesh` each. A `Where` is the parent of an element:
 /// `outside` of the root element, the `vertices` or `triangles` of the last object, ...
 template <class Document, class Where>
 class MeshDocumentReader {
@@ -53,10 +53,11 @@ class MeshDocumentReader {
     virtual ~MeshDocumentReader() { limits_.give_back(triangles_, bytes_); }
 
   protected:
-    /// `name` is the document's name in errors; positions in it are lines, preceded by `part`. If `skim` is
-    /// not null, sequences of vertices and triangles are left unread in `text`; its threads find their ends.
-    MeshDocumentReader(const std::string& name, const std::string& part, Executor* skim, ReadLimits& limits)
-        : name_(name), part_(part), skim_(skim), limits_(limits) {}
+    /// `name` is the document's name in errors; positions in it are lines, preceded by `part`. The threads
+    /// read vertices and triangles.
+    MeshDocumentReader(const std::string& name, const std::string& part, Executor& executor,
+                       ReadLimits& limits)
+        : name_(name), part_(part), executor_(executor), limits_(limits) {}
 
     /// Returns the kind of the element.
     virtual Where start(XmlName name, const XmlAttributes& attributes) = 0;
@@ -75,12 +76,13 @@ class MeshDocumentReader {
             where_.pop_back();
             end(ended);
         };
-        if (skim_ != nullptr) {
-            handlers.many = {form.vertex.tag, form.triangle.tag};
-            handlers.skim = [this, &form](XmlCursor& cursor) {
-                skim(cursor, form);
-            };
-        }
+        handlers.many = {form.vertex.tag, form.triangle.tag};
+        handlers.skim = [this, &form](XmlCursor& cursor) {
+            if (in() == Where::vertices)
+                read_plain(cursor, form.vertex, object().mesh.vertices, 0);
+            else if (in() == Where::triangles)
+                read_plain(cursor, form.triangle, object().mesh.triangles, 1);
+        };
         parse_xml(text, name_, handlers, rules);
     }
 
@@ -116,41 +118,53 @@ class MeshDocumentReader {
     /// Appends an item to a list of the document. Counts the memory of the list as it grows.
     template <class T>
     void append(std::vector<T>& items, T item) {
-        if (items.size() == items.capacity()) {
-            const std::size_t room = items.capacity();
-            limits_.make_room(items, 1, [this] { return here(); });
-            bytes_ += (items.capacity() - room) * sizeof(T);
-        }
+        make_room(items, 1);
         items.push_back(std::move(item));
     }
 
-    void add(const Point3& vertex) {
-        require_all_by_parser();
-        append(object().mesh.vertices, vertex);
-    }
+    void add(const Point3& vertex) { append(object().mesh.vertices, vertex); }
     void add(const TriangleIndices& triangle) {
-        require_all_by_parser();
         count(0, 1);
         append(object().mesh.triangles, triangle);
     }
 
-  private:
-    void skim(XmlCursor& cursor, const MeshTextForm& form) {
-        const bool vertices = in() == Where::vertices;
-        if (!vertices && in() != Where::triangles)
-            return;
-        MeshText& text = object().text;
-        text.location = here();
-        text.prefixes.assign(cursor.prefixes().begin(), cursor.prefixes().end());
-        take_run(cursor, vertices ? form.vertex.end_of_list : form.triangle.end_of_list,
-                 vertices ? text.vertices : text.triangles, *skim_);
+    /// Removes the mesh of the last object.
+    void drop_mesh() {
+        const IndexedMesh mesh = std::exchange(object().mesh, {});
+        give_back(mesh.triangles.size(), mesh.vertices.capacity() * sizeof(Point3) +
+                                             mesh.triangles.capacity() * sizeof(TriangleIndices));
     }
 
-    /// Fails if the document is skimmed, because the order of vertices would be lost if the parser read some
-    /// of them.
-    void require_all_by_parser() const {
-        if (skim_ != nullptr)
-            fail("found a mesh that is not written plainly");
+  private:
+    template <class T>
+    void make_room(std::vector<T>& items, std::size_t more) {
+        const std::size_t room = items.capacity();
+        limits_.make_room(items, more, [this] { return here(); });
+        bytes_ += (items.capacity() - room) * sizeof(T);
+    }
+
+    void give_back(std::uint64_t triangles, std::uint64_t bytes) {
+        count_open();
+        triangles_ -= triangles;
+        bytes_ -= bytes;
+        limits_.give_back(triangles, bytes);
+    }
+
+    /// Reads a list as far as it is plain. `triangles` is 1 if the items are triangles, otherwise 0.
+    template <class Item>
+    void read_plain(XmlCursor& cursor, const MeshTextKind<Item>& kind, std::vector<Item>& items,
+                    std::uint64_t triangles) {
+        std::size_t expected = items.size();
+        read_list(
+            cursor, kind, object().mesh.vertices.size(), items,
+            [&](std::size_t more) {
+                expected += more;
+                count(0, more * triangles);
+                make_room(items, more);
+            },
+            executor_);
+        if (items.size() < expected)
+            give_back((expected - items.size()) * triangles, 0);
     }
 
     void count_open() {
@@ -162,7 +176,7 @@ class MeshDocumentReader {
 
     const std::string& name_;
     const std::string part_;
-    Executor* const skim_;
+    Executor& executor_;
     ReadLimits& limits_;
     std::uint64_t open_triangles_ = 0; ///< not yet counted in the limits
     std::uint64_t open_bytes_ = 0;
@@ -172,18 +186,5 @@ class MeshDocumentReader {
     std::size_t line_ = 1;
     std::vector<Where> where_{Where::outside};
 };
-
-/// Returns `read(true)`, which skims, or `read(false)` if that fails, because the document may be valid
-/// although it cannot be skimmed.
-template <class Read>
-[[nodiscard]] auto skimmed_or_parsed(const Read& read) {
-    try {
-        return read(true);
-    } catch (const Error& error) {
-        if (error.kind() != ErrorKind::input)
-            throw;
-    }
-    return read(false);
-}
 
 } // namespace lamella

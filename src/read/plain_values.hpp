@@ -28,17 +28,8 @@ inline const char* plain_value(const char* text, const char* end, std::uint32_t&
 /// Reads the rest of a tag, in which the attributes `names` are numbers.
 template <std::size_t count, class Values>
 XmlTagEnd take_values(XmlCursor& cursor, const std::array<std::string_view, count>& names, Values& values) {
-    const XmlTagEnd usual = cursor.take_usual(
-        names, [&](std::size_t k, const char* text) { return plain_value(text, cursor.end(), values[k]); });
-    if (usual != XmlTagEnd::none)
-        return usual;
     return cursor.take_attributes(
-        static_cast<int>(count), [&](const char* name, std::size_t length, const char* text) -> XmlValue {
-            for (std::size_t k = 0; k < count; ++k)
-                if (same_name({name, length}, names[k]))
-                    return {static_cast<int>(k), plain_value(text, cursor.end(), values[k])};
-            return {};
-        });
+        names, [&](std::size_t k, const char* text) { return plain_value(text, cursor.end(), values[k]); });
 }
 
 /// Takes the number that is the next text. Returns false if there is none.

@@ -420,8 +420,7 @@ class SliceModelReader {
 
     struct Piece {
         SliceReader slices;
-        std::uint64_t line = 0;                   ///< where the next piece begins
-        std::size_t end = std::string_view::npos; ///< its offset from the first piece; npos after an error
+        std::size_t end = std::string_view::npos; ///< where the next piece begins; npos after an error
     };
 
     /// Reads the slices from the cursor to the end of the stack, or to one that is not plain.
@@ -447,45 +446,28 @@ class SliceModelReader {
     }
 
     void read_pieces_of_stack(XmlCursor& cursor) {
-        const std::size_t first = cursor.position();
-        const std::string_view text = text_.substr(first, end_of_stack(first) - first);
-        const TextPieces pieces = find_sibling_pieces(text, 0, executor_);
-        const std::uint64_t line = lines_.line(first);
-        read_pieces(
-            pieces.begins(), text.size(), executor_,
-            [&](std::size_t begin, std::size_t limit) {
-                return read_piece(first, begin, limit, line + pieces.line(begin) - 1);
+        const std::uint64_t first_line = lines_.line(cursor.position());
+        read_sibling_pieces(
+            text_, cursor.position(), first_line, executor_,
+            [&](std::size_t begin, std::size_t limit, std::uint64_t line) {
+                return read_piece(begin, limit, line);
             },
-            [&](Piece&& piece) {
-                in_pieces_ = in_pieces_ && piece.end != std::string_view::npos &&
-                             slices_->append(std::move(piece.slices));
-                if (!in_pieces_)
-                    return;
-                cursor.move_to(first + piece.end, piece.line - line);
-                lines_ = LineCounter(text_, first + piece.end, piece.line);
+            [&](Piece&& piece, std::uint64_t line) {
+                in_pieces_ = piece.end != std::string_view::npos && slices_->append(std::move(piece.slices));
+                if (in_pieces_) {
+                    cursor.move_to(piece.end, line - first_line);
+                    lines_ = LineCounter(text_, piece.end, line);
+                }
+                return in_pieces_;
             });
     }
 
-    /// Returns the probable end of the stack around `position`.
-    std::size_t end_of_stack(std::size_t position) {
-        const std::string tag = fmt::format("</{}slicestack", before_);
-        if (!stack_ends_)
-            stack_ends_.emplace(find_text_pieces(text_, 0, tag, executor_));
-        // They are the first ones in each chunk; that of `position` may contain others.
-        const PieceBegins& ends = stack_ends_->begins();
-        const auto later = std::upper_bound(ends.begin(), ends.end(), position);
-        const std::size_t end = later == ends.end() ? text_.size() : *later;
-        const std::size_t nearer =
-            text_.substr(position, std::min(end - position, layer_piece_bytes + tag.size())).find(tag);
-        return nearer == std::string_view::npos ? end : position + nearer;
-    }
-
     /// Reads slices from `begin` on, in line `line`, to the first one at or after `limit`, or to the end of
-    /// the stack. These are offsets from the first piece.
-    Piece read_piece(std::size_t first, std::size_t begin, std::size_t limit, std::uint64_t line) {
+    /// the stack.
+    Piece read_piece(std::size_t begin, std::size_t limit, std::uint64_t line) {
         executor_.check_cancelled();
         Piece piece{.slices = SliceReader(-std::numeric_limits<double>::infinity(), limits_)};
-        LineCounter lines(text_, first + begin, line);
+        LineCounter lines(text_, begin, line);
         std::size_t depth = 0;
         const ThreeMfHandlers handlers{.start =
                                            [&](const ThreeMfElement& element) {
@@ -504,15 +486,12 @@ class SliceModelReader {
                                        .skim =
                                            [&](XmlCursor& cursor) {
                                                if (depth == 0 && !piece.slices.in_polygon())
-                                                   scan(cursor, first + limit, piece.slices, lines);
+                                                   scan(cursor, limit, piece.slices, lines);
                                                depth += cursor.open().size();
                                            }};
         try {
-            const std::size_t end =
-                parse_part_elements(part_, first + begin, first + limit, before_ + "slicestack", *spaces_,
-                                    line, handlers, executor_);
-            piece.line = lines.line(end);
-            piece.end = end - first;
+            piece.end = parse_part_elements(part_, begin, limit, before_ + "slicestack", *spaces_, line,
+                                            handlers, executor_);
         } catch (const Error& error) {
             if (error.kind() != ErrorKind::input)
                 throw;
@@ -535,7 +514,6 @@ class SliceModelReader {
     ReadLimits& limits_;
     Executor& executor_;
     LineCounter lines_{text_};
-    std::optional<TextPieces> stack_ends_; ///< offsets where stacks probably end
     const ThreeMfSpaces* spaces_ = nullptr;
     std::shared_ptr<const SliceText> again_; ///< null if layers are kept in memory
     bool is_plain_ = false;                  ///< the root element gives the prefix to slices

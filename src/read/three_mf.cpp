@@ -4,8 +4,8 @@
 #include "core/executor.hpp"
 #include "read/assembly.hpp"
 #include "read/body_selection.hpp"
-#include "read/mesh_document.hpp"
 #include "read/mesh_readers.hpp"
+#include "read/mesh_text.hpp"
 #include "read/opc_package.hpp"
 #include "read/read_limits.hpp"
 #include "read/remarks.hpp"
@@ -39,11 +39,6 @@ struct MayHaveSlices {};
 /// Loads the model parts of a package with their meshes: the root and all parts that it refers to.
 class PartLoader {
   public:
-    struct Part {
-        ByteSource bytes;
-        ThreeMfModel model;
-    };
-
     /// With `no_slices`, load() throws MayHaveSlices if a part mentions the namespace of slices.
     PartLoader(const ZipReader& package, bool no_slices, Remarks& remarks, ReadLimits& limits,
                Executor& executor, const Execution& execution)
@@ -58,7 +53,7 @@ class PartLoader {
     }
 
     /// The parts of the package, the root first.
-    [[nodiscard]] std::vector<Part>& parts() noexcept { return parts_; }
+    [[nodiscard]] std::vector<ThreeMfModel>& parts() noexcept { return parts_; }
     /// Returns the number of the part that contains a used object.
     [[nodiscard]] std::size_t part_of(const ThreeMfUse& use, std::size_t user) const {
         return use.part.empty() ? user : part_index_.at(use.part);
@@ -128,10 +123,10 @@ class PartLoader {
 
     /// Loads the root part and all parts that it refers to.
     void load_parts(const std::string& root) {
-        parts_.emplace_back().model.part = root;
+        parts_.emplace_back().part = root;
         part_index_.emplace(root, 0);
         load_parts_from(0);
-        ThreeMfModel& model = parts_[0].model;
+        ThreeMfModel& model = parts_[0];
         std::vector<ThreeMfUse*> uses;
         for (ThreeMfUse& item : model.items)
             uses.push_back(&item);
@@ -149,7 +144,7 @@ class PartLoader {
             if (!listed.contains(part))
                 remarks_.add(fmt::format("the part '{}' is used without a relationship to it",
                                          printable(part, longest_file_name)));
-            parts_.emplace_back().model.part = part;
+            parts_.emplace_back().part = part;
         }
         if (!others.empty())
             load_parts_from(1);
@@ -157,7 +152,7 @@ class PartLoader {
 
     /// Adds the part that contains a used object to `others`, under its name in the archive.
     void find_part(ThreeMfUse& use, std::vector<std::string>& others) {
-        const ThreeMfModel& root = parts_[0].model;
+        const ThreeMfModel& root = parts_[0];
         use.part = opc_resolved(package_, root.part, use.part);
         if (!part_index_.emplace(use.part, 1 + others.size()).second)
             return;
@@ -168,43 +163,22 @@ class PartLoader {
         others.push_back(use.part);
     }
 
-    /// Decompresses and reads parts in parallel: first their structure, then the numbers of all meshes. All
-    /// threads read the structure of a single part.
+    /// Decompresses and reads parts in parallel. All threads read a single part.
     void load_parts_from(std::size_t first) {
         const bool single = parts_.size() - first == 1;
         executor_.for_chunks(parts_.size() - first, 1, [&](std::uint64_t i, std::uint64_t, unsigned) {
-            Part& part = parts_[first + i];
+            ThreeMfModel& part = parts_[first + i];
             Executor alone({.threads = 1});
             Executor& of_part = single ? executor_ : alone;
-            part.bytes = unpacked_entry(package_, *package_.find(part.model.part), limits_, &of_part);
-            if (no_slices_ && part.bytes.text().find(three_mf::slices) != std::string_view::npos)
+            const ByteSource bytes = unpacked_entry(package_, *package_.find(part.part), limits_, &of_part);
+            if (no_slices_ && bytes.text().find(three_mf::slices) != std::string_view::npos)
                 throw MayHaveSlices();
-            part.model =
-                skimmed_or_parsed([&](bool skim) { return parsed(part, skim ? &of_part : nullptr); });
+            part = read_three_mf_model(bytes, part.part, first + i == 0, of_part, limits_,
+                                       [&](std::size_t read) {
+                                           executor_.check_cancelled();
+                                           progress_.add(read);
+                                       });
         });
-        read_meshes(first);
-    }
-
-    ThreeMfModel parsed(const Part& part, Executor* skim) {
-        return read_three_mf_model(part.bytes, part.model.part, &part == &parts_[0], skim, limits_,
-                                   [&](std::size_t read) {
-                                       executor_.check_cancelled();
-                                       progress_.add(skim != nullptr ? read : 0);
-                                   });
-    }
-
-    void read_meshes(std::size_t first) {
-        std::vector<ThreeMfModel*> models;
-        for (std::size_t i = first; i < parts_.size(); ++i)
-            models.push_back(&parts_[i].model);
-        const std::vector<bool> plain = read_skimmed_meshes(std::span<ThreeMfModel* const>(models),
-                                                            three_mf_text_form(), limits_, executor_);
-        for (std::size_t i = first; i < parts_.size(); ++i) {
-            Part& part = parts_[i];
-            if (!plain[i - first])
-                part.model = parsed(part, nullptr);
-            part.bytes = {};
-        }
     }
 
     const ZipReader& package_;
@@ -213,7 +187,7 @@ class PartLoader {
     ReadLimits& limits_;
     Executor& executor_;
     ProgressMeter progress_;
-    std::vector<Part> parts_;
+    std::vector<ThreeMfModel> parts_;
     std::map<std::string, std::size_t> part_index_;
 };
 
@@ -229,13 +203,13 @@ class ThreeMfReader {
         for (const std::string& warning : package_.counted_warnings())
             remarks_.add(warning);
         loader_.load();
-        for (const PartLoader::Part& part : parts_)
-            for (const std::string& remark : part.model.remarks)
+        for (const ThreeMfModel& part : parts_)
+            for (const std::string& remark : part.remarks)
                 remarks_.add(remark);
         config_ = read_slicer_config(package_, remarks_, limits_, executor_);
         make_nodes();
         make_file();
-        const ThreeMfModel& model = parts_.front().model;
+        const ThreeMfModel& model = parts_.front();
         file_.unit_mm = model.unit_mm;
         file_.name = !model.title.empty() ? model.title : file_.objects.front().name;
         file_.warnings = remarks_.take();
@@ -246,29 +220,29 @@ class ThreeMfReader {
     /// Makes one node for each object of each part.
     void make_nodes() {
         std::size_t objects = 0;
-        std::size_t uses = parts_[0].model.items.size();
-        for (const PartLoader::Part& part : parts_) {
-            objects += part.model.objects.size();
-            for (const ThreeMfObject& object : part.model.objects)
+        std::size_t uses = parts_[0].items.size();
+        for (const ThreeMfModel& part : parts_) {
+            objects += part.objects.size();
+            for (const ThreeMfObject& object : part.objects)
                 uses += object.components.size();
         }
         count_assembly(objects, uses, limits_);
         std::vector<std::map<std::uint32_t, std::size_t>> numbers(parts_.size());
         for (std::size_t i = 0; i < parts_.size(); ++i)
-            for (std::size_t k = 0; k < parts_[i].model.objects.size(); ++k) {
-                numbers[i].emplace(parts_[i].model.objects[k].id, nodes_.size());
-                sources_.push_back(&parts_[i].model.objects[k]);
-                const double unit = parts_[i].model.unit_mm;
+            for (std::size_t k = 0; k < parts_[i].objects.size(); ++k) {
+                numbers[i].emplace(parts_[i].objects[k].id, nodes_.size());
+                sources_.push_back(&parts_[i].objects[k]);
+                const double unit = parts_[i].unit_mm;
                 AssemblyNode node;
                 node.name = sources_.back()->name;
                 node.unit = scaling(unit, unit, unit);
-                node.location = location(parts_[i].model, sources_.back()->line,
-                                         fmt::format("object {}", sources_.back()->id));
+                node.location =
+                    location(parts_[i], sources_.back()->line, fmt::format("object {}", sources_.back()->id));
                 nodes_.push_back(std::move(node));
             }
         const auto make_use = [&](std::size_t part, const ThreeMfUse& use) {
             const std::size_t target = loader_.part_of(use, part);
-            const ThreeMfModel& model = parts_[part].model;
+            const ThreeMfModel& model = parts_[part];
             const auto node = numbers[target].find(use.object);
             if (node == numbers[target].end())
                 throw Error(
@@ -286,7 +260,7 @@ class ThreeMfReader {
         };
         std::size_t node = 0;
         for (std::size_t i = 0; i < parts_.size(); ++i)
-            for (ThreeMfObject& object : parts_[i].model.objects) {
+            for (ThreeMfObject& object : parts_[i].objects) {
                 nodes_[node].uses.reserve(object.components.size());
                 for (const ThreeMfUse& component : object.components)
                     nodes_[node].uses.push_back(make_use(i, component));
@@ -301,8 +275,8 @@ class ThreeMfReader {
         for (const auto& [id, object] : config_)
             gaps_.add_absent(id, object);
         gaps_.report(remarks_);
-        roots_.reserve(parts_[0].model.items.size());
-        for (const ThreeMfUse& item : parts_[0].model.items) {
+        roots_.reserve(parts_[0].items.size());
+        for (const ThreeMfUse& item : parts_[0].items) {
             AssemblyUse use = make_use(0, item);
             const ThreeMfObject& object = *sources_[use.node];
             if (use.role == MeshRole::other && !selection_.takes(use.role))
@@ -310,7 +284,7 @@ class ThreeMfReader {
                     ErrorKind::input,
                     fmt::format("{}, line {}: the build holds object {}, whose type 'other' says that it "
                                 "is not to be made; `include` other to read it as a solid",
-                                parts_[0].model.source, item.line, object.id));
+                                parts_[0].source, item.line, object.id));
             if (item.printable)
                 roots_.push_back(std::move(use));
             else
@@ -446,7 +420,7 @@ class ThreeMfReader {
 
     /// Adds the meshes that the build reaches, and their placements.
     void make_file() {
-        if (parts_[0].model.items.empty())
+        if (parts_[0].items.empty())
             refuse_package(package_, "holds nothing to slice: its build is empty");
         std::vector<std::size_t> printed;
         for (const AssemblyUse& root : roots_)
@@ -503,7 +477,7 @@ class ThreeMfReader {
     ReadLimits limits_;
     Executor executor_;
     PartLoader loader_;
-    std::vector<PartLoader::Part>& parts_ = loader_.parts();
+    std::vector<ThreeMfModel>& parts_ = loader_.parts();
     std::vector<AssemblyNode> nodes_;
     std::vector<ThreeMfObject*> sources_; ///< of each node
     std::vector<AssemblyUse> roots_;

@@ -68,13 +68,15 @@ bool says_true(std::string_view text) {
     return word == "true" || word == "1";
 }
 
+constexpr std::array<std::string_view, 3> vertex_values = {"x", "y", "z"};
+constexpr std::array<std::string_view, 3> triangle_values = {"v1", "v2", "v3"};
+
 TriangleIndices triangle_of(const ThreeMfElement& element, std::size_t vertices) {
-    TriangleIndices corners;
-    constexpr std::array<std::string_view, 3> names = {"v1", "v2", "v3"};
+    TriangleIndices corners{};
     for (std::size_t k = 0; k < 3; ++k) {
-        corners[k] = element[names[k]].index();
+        corners[k] = element[triangle_values[k]].index();
         if (corners[k] >= vertices)
-            element.fail(fmt::format("{} = {}", names[k], corners[k]),
+            element.fail(fmt::format("{} = {}", triangle_values[k], corners[k]),
                          fmt::format("less than {}, the number of vertices", vertices));
     }
     return corners;
@@ -129,10 +131,10 @@ enum class ModelElement {
 
 class ModelReader final : MeshDocumentReader<ThreeMfModel, ModelElement> {
   public:
-    ModelReader(const ByteSource& source, const std::string& part, bool is_root, Executor* skim,
+    ModelReader(const ByteSource& source, const std::string& part, bool is_root, Executor& executor,
                 ReadLimits& limits)
         : MeshDocumentReader(source.name, fmt::format("part '{}', ", printable(part, longest_object_name)),
-                             skim, limits),
+                             executor, limits),
           is_root_(is_root) {
         document().part = part;
         document().source = source.name;
@@ -148,8 +150,7 @@ class ModelReader final : MeshDocumentReader<ThreeMfModel, ModelElement> {
                 setting_value_ += chunk;
         };
         handlers.declare = [this](std::string_view prefix, std::string_view space) {
-            if (in() == Where::outside)
-                spaces_.emplace(prefix, space);
+            spaces_.emplace(prefix, space);
         };
         handlers.progress = progress;
         parse(text, three_mf_text_form(), std::move(handlers), three_mf_rules);
@@ -279,8 +280,7 @@ class ModelReader final : MeshDocumentReader<ThreeMfModel, ModelElement> {
             return;
         object().is_substituted = true;
         object().is_mesh = false;
-        object().mesh = {};
-        object().text = {};
+        drop_mesh();
         object().volumes.clear();
         object().components.clear();
         append(object().components, *std::move(full));
@@ -387,7 +387,9 @@ class ModelReader final : MeshDocumentReader<ThreeMfModel, ModelElement> {
     }
 
     Where add_vertex(const ThreeMfElement& element) {
-        add(Point3{element["x"].number(), element["y"].number(), element["z"].number()});
+        std::array<double, 3> xyz{};
+        static_cast<void>(element.take(vertex_values, xyz));
+        add(Point3{xyz[0], xyz[1], xyz[2]});
         return Where::elsewhere;
     }
 
@@ -431,25 +433,22 @@ class ModelReader final : MeshDocumentReader<ThreeMfModel, ModelElement> {
     ThreeMfProperties properties_;
 };
 
-bool read_model_vertices(std::string_view run, const MeshText& text, std::span<Point3> vertices) {
-    XmlCursor cursor = cursor_over(run, text.prefixes);
-    for (Point3& vertex : vertices) {
-        constexpr std::array<std::string_view, 3> names = {"x", "y", "z"};
+std::size_t read_model_vertices(XmlCursor& cursor, std::size_t, std::span<Point3> vertices) {
+    return take_items(cursor, vertices, [&](Point3& vertex) {
         std::array<double, 3> numbers{};
-        if (!cursor.take("<vertex") || take_values(cursor, names, numbers) != XmlTagEnd::element)
+        if (!cursor.take("<vertex") || take_values(cursor, vertex_values, numbers) != XmlTagEnd::element)
             return false;
         vertex = {numbers[0], numbers[1], numbers[2]};
-    }
-    return cursor.next() == cursor.end();
+        return true;
+    });
 }
 
-bool read_model_triangles(std::string_view run, const MeshText& text, std::span<TriangleIndices> triangles) {
-    XmlCursor cursor = cursor_over(run, text.prefixes);
-    constexpr std::array<std::string_view, 3> names = {"v1", "v2", "v3"};
-    for (TriangleIndices& corners : triangles)
-        if (!cursor.take("<triangle") || take_values(cursor, names, corners) != XmlTagEnd::element)
-            return false;
-    return cursor.next() == cursor.end();
+std::size_t read_model_triangles(XmlCursor& cursor, std::size_t vertices,
+                                 std::span<TriangleIndices> triangles) {
+    return take_items(cursor, triangles, [&](TriangleIndices& t) {
+        return cursor.take("<triangle") && take_values(cursor, triangle_values, t) == XmlTagEnd::element &&
+               std::max({t[0], t[1], t[2]}) < vertices;
+    });
 }
 
 } // namespace
@@ -470,17 +469,14 @@ MeshRole role_of(ThreeMfObjectType type) noexcept {
 }
 
 ThreeMfModel read_three_mf_model(const ByteSource& source, const std::string& part, bool is_root,
-                                 Executor* skim, ReadLimits& limits,
+                                 Executor& executor, ReadLimits& limits,
                                  const std::function<void(std::size_t)>& progress) {
-    return ModelReader(source, part, is_root, skim, limits).read(source.text(), progress);
+    return ModelReader(source, part, is_root, executor, limits).read(source.text(), progress);
 }
 
 const MeshTextForm& three_mf_text_form() noexcept {
-    static const MeshTextForm form{
-        {"<vertex", "</vertices", 1, std::string_view("<vertex x=\"0\" y=\"0\" z=\"0\"/>").size(),
-         read_model_vertices},
-        {"<triangle", "</triangles", 1, std::string_view("<triangle v1=\"0\" v2=\"1\" v3=\"2\"/>").size(),
-         read_model_triangles}};
+    static const MeshTextForm form{{"<vertex", "</vertices", read_model_vertices},
+                                   {"<triangle", "</triangles", read_model_triangles}};
     return form;
 }
 

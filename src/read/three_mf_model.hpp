@@ -35,8 +35,7 @@ struct ThreeMfObject {
     bool is_substituted = false;      ///< by the alternative
     std::string foreign = {};         ///< first element of an extension that is there instead of a mesh
     std::vector<VolumeRange> volumes; ///< of its mesh, if Slic3r defines them
-    IndexedMesh mesh;                 ///< in the unit of the part; empty until a skimmed `text` is read
-    MeshText text;
+    IndexedMesh mesh;                 ///< in the unit of the part
     std::vector<ThreeMfUse> components;
 };
 
@@ -50,11 +49,10 @@ struct ThreeMfModel {
     std::vector<std::string> remarks; ///< violations of the format's rules, one line each
 };
 
-/// Reads a model part. If `skim` is not null, vertices and triangles in plain sequences are left unread in
-/// `text`, and its threads find the ends of the sequences. Throws Error{input} with the line if the part is
-/// not a model, and Error{limit} as soon as a limit is exceeded. The result remains counted in the limits.
+/// Reads a model part; the threads read its meshes. Throws Error{input} with the line if the part is not a
+/// model, and Error{limit} as soon as a limit is exceeded. The result remains counted in the limits.
 [[nodiscard]] ThreeMfModel read_three_mf_model(const ByteSource& source, const std::string& part,
-                                               bool is_root, Executor* skim, ReadLimits& limits,
+                                               bool is_root, Executor& executor, ReadLimits& limits,
                                                const std::function<void(std::size_t)>& progress);
 
 /// Returns the form in which model parts write meshes.

@@ -219,16 +219,9 @@ ByteSource unpack_part(const ZipReader& package, const std::string& name, ReadLi
 
 void parse_part(const ByteSource& part, const ThreeMfHandlers& handlers, const Executor& executor) {
     ThreeMfSpaces spaces;
-    bool in_root = false;
     XmlHandlers of_xml = xml_handlers(part, handlers, spaces, 1, executor);
     of_xml.declare = [&](std::string_view prefix, std::string_view space) {
-        if (!in_root)
-            spaces.emplace(prefix, space);
-    };
-    of_xml.start = [&, start = of_xml.start](XmlName name, const XmlAttributes& attributes,
-                                             std::size_t line) {
-        in_root = true;
-        start(name, attributes, line);
+        spaces.emplace(prefix, space);
     };
     parse_xml(part.text(), part.name, of_xml, three_mf_rules);
 }
