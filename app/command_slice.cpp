@@ -462,9 +462,10 @@ void check_job_of_team(const Command& command, const FileJob& job, Communicator&
 
 /// Checks that statistics and stamp can be written, because this would otherwise fail only after hours of
 /// slicing. All processes fail together.
-void check_positions(const SliceArguments& arguments, Communicator& processes) {
+void check_positions(const SliceArguments& arguments) {
+    Communicator* const team = arguments.team;
     std::string refusal;
-    if (processes.process() == 0) {
+    if (team == nullptr || team->process() == 0) {
         try {
             for (const std::string& path : {arguments.stats, stamp_of(arguments)})
                 if (!path.empty())
@@ -473,8 +474,10 @@ void check_positions(const SliceArguments& arguments, Communicator& processes) {
             refusal = error.what();
         }
     }
-    if (const std::vector<std::string> all = processes.gather(refusal); !all.front().empty())
-        throw Error(ErrorKind::output, all.front());
+    if (team != nullptr)
+        refusal = team->gather(refusal).front();
+    if (!refusal.empty())
+        throw Error(ErrorKind::output, refusal);
 }
 
 int run_slice(SliceArguments& arguments, const Context& context) {
@@ -490,7 +493,7 @@ int run_slice(SliceArguments& arguments, const Context& context) {
         stamp.push_back({"the stamp of the shard", path});
     check_outputs(context.command, stamp);
     finish_input(arguments);
-    Communicator& processes = arguments.team != nullptr ? *arguments.team : alone();
+    Communicator* const team = arguments.team;
     const Execution execution = arguments.run.execution(context);
     FileJob job;
     Json origin; // origin of a shard with a stamp
@@ -499,19 +502,19 @@ int run_slice(SliceArguments& arguments, const Context& context) {
     const auto slice = [&](const Execution& run) -> std::optional<FileResult> {
         job = make_job(arguments);
         deadline.note_input(meshes);
-        if (job.shard && arguments.team != nullptr)
+        if (job.shard && team != nullptr)
             throw Error(ErrorKind::usage, "--shard is for lamella: here the layers are shared out already");
         if (job.shard && !job.output.empty()) {
             origin = shard_origin(context.command, job, run);
             if (arguments.resume && is_finished_shard(job, arguments.stats, origin, run))
                 return std::nullopt;
         }
-        if (arguments.team != nullptr)
-            check_job_of_team(context.command, job, processes);
-        check_positions(arguments, processes);
+        if (team != nullptr)
+            check_job_of_team(context.command, job, *team);
+        check_positions(arguments);
         if (!origin.is_null())
             remove_stamp_without_output(job.output);
-        return slice_file(job, run, processes);
+        return team != nullptr ? slice_file(job, run, *team) : slice_file(job, run);
     };
     const std::optional<FileResult> outcome = deadline.run(slice);
     deadline.note_output(job.output);
@@ -522,14 +525,14 @@ int run_slice(SliceArguments& arguments, const Context& context) {
         return 0;
     }
     const FileResult& result = *outcome;
-    if (processes.process() != 0)
+    if (team != nullptr && team->process() != 0)
         return 0;
     for (const std::string& warning : run_warnings(job, result))
         context.messages.warn(warning);
     after_output(job.output, [&] {
         if (!arguments.stats.empty()) {
             Json stats = stats_json(context.command, job, result);
-            if (arguments.team != nullptr)
+            if (team != nullptr)
                 stats["processes"] = processes_json(result.processes);
             const std::string text = json_text(stats);
             if (arguments.stats == "-")

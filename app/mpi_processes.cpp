@@ -123,26 +123,4 @@ void MpiProcesses::exchange(std::span<const std::span<const std::byte>> outgoing
     }
 }
 
-void MpiProcesses::send(std::size_t to, std::string_view bytes) {
-    const std::uint64_t size = bytes.size();
-    MPI_Send(&size, 1, MPI_UINT64_T, static_cast<int>(to), tag, MPI_COMM_WORLD);
-    for (std::uint64_t round = 0; round < rounds_of(size, most_at_once_); ++round) {
-        const auto some = piece(std::span(bytes), round, most_at_once_);
-        MPI_Send(some.data(), static_cast<int>(some.size()), MPI_BYTE, static_cast<int>(to), tag,
-                 MPI_COMM_WORLD);
-    }
-}
-
-std::string MpiProcesses::receive(std::size_t from) {
-    std::uint64_t size = 0;
-    MPI_Recv(&size, 1, MPI_UINT64_T, static_cast<int>(from), tag, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
-    std::string bytes(size, '\0');
-    for (std::uint64_t round = 0; round < rounds_of(size, most_at_once_); ++round) {
-        const auto some = piece(std::span(bytes), round, most_at_once_);
-        MPI_Recv(some.data(), static_cast<int>(some.size()), MPI_BYTE, static_cast<int>(from), tag,
-                 MPI_COMM_WORLD, MPI_STATUS_IGNORE);
-    }
-    return bytes;
-}
-
 } // namespace lamella::app

@@ -29,8 +29,6 @@ class MpiProcesses final : public Communicator {
     [[nodiscard]] std::vector<std::uint64_t> exchange(std::span<const std::uint64_t> outgoing) override;
     void exchange(std::span<const std::span<const std::byte>> outgoing,
                   std::span<const std::span<std::byte>> incoming) override;
-    void send(std::size_t to, std::string_view bytes) override;
-    [[nodiscard]] std::string receive(std::size_t from) override;
 
     /// Waits until all processes have called it. Returns false if some have not after `patience`.
     [[nodiscard]] bool meet(std::chrono::seconds patience);

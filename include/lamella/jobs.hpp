@@ -19,6 +19,7 @@
 #include "lamella/pipeline/layer_findings.hpp"
 #include "lamella/pipeline/merge.hpp"
 #include "lamella/pipeline/plate.hpp"
+#include "lamella/pipeline/processes.hpp"
 #include "lamella/pipeline/scan_layers.hpp"
 #include "lamella/pipeline/slice_file.hpp"
 #include "lamella/pipeline/verify.hpp"

@@ -1,5 +1,7 @@
 #include "pipeline/agreement.hpp"
 
+#include "lamella/core/error.hpp"
+
 #include <new>
 #include <string>
 #include <vector>
@@ -7,13 +9,13 @@
 namespace lamella {
 namespace {
 
-/// Returns the kind as one character, then the text; "" if nothing was thrown.
-std::string outcome_of(const std::exception_ptr& failure) {
+// The first character of a message: all is well, or the kind of an error, whose text follows.
+constexpr char well = '-';
+
+std::string message_of(const std::exception_ptr& failure) {
     const auto failed = [](ErrorKind kind, const std::string& text) {
         return static_cast<char>('a' + static_cast<int>(kind)) + text;
     };
-    if (!failure)
-        return {};
     try {
         std::rethrow_exception(failure);
     } catch (const Error& error) {
@@ -25,21 +27,40 @@ std::string outcome_of(const std::exception_ptr& failure) {
     }
 }
 
-ErrorKind kind_of(const std::string& outcome) {
-    return static_cast<ErrorKind>(outcome.front() - 'a');
+ErrorKind kind_of(const std::string& message) {
+    return static_cast<ErrorKind>(message.front() - 'a');
 }
 
 } // namespace
 
-void agree(Communicator& processes, const std::exception_ptr& failure) {
-    const std::vector<std::string> outcomes = processes.gather(outcome_of(failure));
+std::vector<std::string> Agreement::gather(std::string_view mine) {
+    return meet(well + std::string(mine));
+}
+
+void Agreement::sum(std::span<std::uint64_t> values) {
+    gather({});
+    processes_.sum(values);
+}
+
+std::vector<std::string> Agreement::meet(const std::string& message) {
+    std::vector<std::string> all = processes_.gather(message);
     const std::string* worst = nullptr;
-    for (const std::string& outcome : outcomes)
-        if (!outcome.empty() && (worst == nullptr || (kind_of(*worst) == ErrorKind::cancelled &&
-                                                      kind_of(outcome) != ErrorKind::cancelled)))
-            worst = &outcome;
-    if (worst != nullptr)
+    for (const std::string& one : all)
+        if (one.front() != well && (worst == nullptr || (kind_of(*worst) == ErrorKind::cancelled &&
+                                                         kind_of(one) != ErrorKind::cancelled)))
+            worst = &one;
+    if (worst != nullptr) {
+        failed_ = true;
         throw Error(kind_of(*worst), worst->substr(1));
+    }
+    for (std::string& one : all)
+        one.erase(0, 1);
+    return all;
+}
+
+void Agreement::report(const std::exception_ptr& failure) {
+    meet(message_of(failure));
+    throw Error(ErrorKind::internal, "the processes do not know of an error");
 }
 
 } // namespace lamella

@@ -9,8 +9,6 @@
 #include "core/progress.hpp"
 #include "core/stopwatch.hpp"
 #include "mesh/folds.hpp"
-#include "pipeline/agreement.hpp"
-#include "pipeline/packed.hpp"
 #include "pipeline/plate_builder.hpp"
 #include "pipeline/plate_names.hpp"
 #include "pipeline/stream_sums.hpp"
@@ -52,16 +50,6 @@ std::string first_option_needing_whole_mesh(const FileJob& job, const Engine& en
     return {};
 }
 
-/// Returns the range of n records that a process reads. It consists of whole chunks of `fold_chunk` records.
-/// Volumes are summed chunk by chunk, so they have the same bits as in a single process.
-RecordRange part_of(std::uint64_t n, std::size_t process, std::size_t processes) {
-    const std::uint64_t chunks = (n + fold_chunk - 1) / fold_chunk;
-    const auto bound = [&](std::size_t p) {
-        return std::min(n, chunks * p / processes * fold_chunk);
-    };
-    return {bound(process), bound(process + 1)};
-}
-
 /// Returns ranges of records that contain all chunks with a triangle cut by one of the planes. Ranges at a
 /// short distance are joined; the chunks between them are then read, too.
 std::vector<RecordRange> records_on(PlaneRange planes, std::span<const PlaneRange> cuts,
@@ -100,14 +88,6 @@ std::uint64_t most_points(const RangeSurvey& survey, std::uint32_t planes) {
     return most;
 }
 
-/// Properties of the part of a file that a process read.
-struct Seen {
-    Box3 box;
-    std::uint64_t unusable = 0;
-    std::uint64_t first_unusable = 0; ///< set if `unusable` > 0
-    Point3f first_corner;             ///< set if there are triangles
-};
-
 /// Throws if meshes that cannot be sliced in ranges exceed the memory limit. It is called after each file is
 /// read; the file at `path` is the last of `files`.
 void check_size(const std::string& path, std::span<const MeshFile> files, const JobMemory& memory,
@@ -137,49 +117,42 @@ Error changed_while_read(const std::string& path) {
 
 // ------------------------------------------------------------------------------------------------- open
 
-Feed::Feed(const FileJob& job, const Engine& engine, Communicator& processes, const Execution& execution)
-    : memory_(job), processes_(processes), among_(&alone()), reading_{.strict = job.strict,
-                                                                      .include = job.include,
-                                                                      .max_triangles = job.max_triangles,
-                                                                      .max_memory = job.max_memory},
+Feed::Feed(const FileJob& job, const Engine& engine, const Execution& execution, SharedReading* shared)
+    : memory_(job),
+      processes_(shared != nullptr ? shared->processes() : 1), reading_{.strict = job.strict,
+                                                                        .include = job.include,
+                                                                        .max_triangles = job.max_triangles,
+                                                                        .max_memory = job.max_memory},
       measure_volume_(job.layer_statistics), neighbours_(neighbours_of(job)) {
-    if (processes.size() > 1 && std::any_of(job.inputs.begin(), job.inputs.end(),
-                                            [](const PlateInput& input) { return input.path == "-"; }))
-        throw Error(ErrorKind::usage,
-                    "standard input reaches one of the processes only; give the name of a file");
     const unsigned threads = thread_count(execution);
     std::vector<MeshInput> inputs;
     std::uint64_t room = memory_.of_input(threads); // for copies of inputs in memory until they are parsed
     std::uint64_t bytes = 0;
     std::string not_streamed;
     bool divisible = true;
-    in_agreement(processes, [&] {
-        for (const PlateInput& input : job.inputs) {
-            const MeshInput& file = inputs.emplace_back(input.path, room, execution);
-            room -= std::min(room, file.bytes_in_memory());
-            if (file.can_stream())
-                bytes += memory_.of_whole(file, threads);
-            else
-                not_streamed = file.path();
-            divisible = divisible && file.can_stream() && file.records().has_value();
-        }
-        if (bytes != 0)
-            bytes += memory_.besides_meshes(threads);
-    });
-    // Machines may differ in memory, but all processes must take the same decision.
-    std::uint64_t too_large = bytes > memory_.limit ? 1 : 0;
-    processes.sum(std::span(&too_large, 1));
+    for (const PlateInput& input : job.inputs) {
+        const MeshInput& file = inputs.emplace_back(input.path, room, execution);
+        room -= std::min(room, file.bytes_in_memory());
+        if (file.can_stream())
+            bytes += memory_.of_whole(file, threads);
+        else
+            not_streamed = file.path();
+        divisible = divisible && file.can_stream() && file.records().has_value();
+    }
+    if (bytes != 0)
+        bytes += memory_.besides_meshes(threads);
+    const bool too_large = bytes > memory_.limit;
 
     const std::string needs_all = first_option_needing_whole_mesh(job, engine);
     const bool can_stream = not_streamed.empty() && needs_all.empty();
-    in_ranges_ = can_stream && too_large != 0;
-    if (processes.size() > 1 && can_stream && divisible)
-        among_ = &processes;
-    if (in_ranges_ || among_->size() > 1) {
+    in_ranges_ = can_stream && too_large;
+    if (can_stream && divisible)
+        shared_ = shared;
+    if (in_ranges_ || shared_ != nullptr) {
         look_at(job, std::move(inputs), execution);
         return;
     }
-    if (too_large != 0 && memory_.asked)
+    if (too_large && memory_.asked)
         throw Error(
             ErrorKind::limit,
             fmt::format("{}: to be sliced whole takes up to {} of memory, above the {} of "
@@ -190,12 +163,12 @@ Feed::Feed(const FileJob& job, const Engine& engine, Communicator& processes, co
                             : fmt::format("{}, which has to be read whole: only STL files that are not "
                                           "compressed can be read in parts",
                                           not_streamed)));
-    in_agreement(processes, [&] { read(job, std::move(inputs), execution); });
+    read(job, std::move(inputs), execution);
 }
 
-Feed::Feed(const FileJob& job, Plate plate, Communicator& processes)
-    : memory_(job), processes_(processes), among_(&alone()), measure_volume_(job.layer_statistics),
-      neighbours_(neighbours_of(job)), plate_(std::move(plate)) {}
+Feed::Feed(const FileJob& job, Plate plate)
+    : memory_(job), measure_volume_(job.layer_statistics), neighbours_(neighbours_of(job)),
+      plate_(std::move(plate)) {}
 
 void Feed::read(const FileJob& job, std::vector<MeshInput> inputs, const Execution& execution) {
     const unsigned threads = thread_count(execution);
@@ -215,8 +188,8 @@ void Feed::look_at(const FileJob& job, std::vector<MeshInput> inputs, const Exec
     for (MeshInput& input : inputs) {
         File& file = files_.emplace_back(File{std::move(input), std::nullopt, std::nullopt, {}, 0, {}, {}});
         file.records = file.input.records();
-        if (among_->size() > 1) {
-            file.part = part_of(file.records.value(), among_->process(), among_->size());
+        if (shared_ != nullptr) {
+            file.part = shared_->part_of(file.records.value());
             figures_.triangles_read += file.part->end - file.part->begin;
         }
         bytes_to_read_ += 3 * bytes_of(file, file.part);
@@ -226,44 +199,26 @@ void Feed::look_at(const FileJob& job, std::vector<MeshInput> inputs, const Exec
         File& file = files_[i];
         const double unit = job.inputs[i].unit_mm.value_or(1);
         const Transform placement = compose(job.inputs[i].placement, scaling(unit, unit, unit));
-        MeshFile read;
-        Seen mine;
-        in_agreement(*among_, [&] {
-            Extent extent(placement);
-            read = stream(
-                file, [&](const TriangleSoup& batch, std::uint64_t number) { extent.add(batch, number); },
-                execution, file.part);
-            mine = {extent.box(), read.nonfinite_triangles, read.first_nonfinite, extent.first_corner()};
-        });
-        Box3 box;
-        std::uint64_t unusable = 0;
-        std::uint64_t first_unusable = read.stored_triangles;
-        const std::string compressed =
-            Packer().put(mine.box).put(mine.unusable).put(mine.first_unusable).put(mine.first_corner).take();
-        for (const std::string& message : among_->gather(compressed)) {
-            Unpacker from(message);
-            const Seen seen{from.get<Box3>(), from.get<std::uint64_t>(), from.get<std::uint64_t>(),
-                            from.get<Point3f>()}; // in the order of put()
-            if (seen.unusable > 0)
-                first_unusable = std::min(first_unusable, seen.first_unusable);
-            unusable += seen.unusable;
-            if (box.empty())
-                file.first_corner = seen.first_corner;
-            box.add(seen.box);
-        }
-        file.triangles = read.stored_triangles - unusable;
-        if (file.part) { // the process has checked only its own part
+        Extent extent(placement);
+        MeshFile read = stream(
+            file, [&](const TriangleSoup& batch, std::uint64_t number) { extent.add(batch, number); },
+            execution, file.part);
+        FileSurvey found{extent.box(), read.nonfinite_triangles, read.first_nonfinite, extent.first_corner()};
+        if (shared_ != nullptr) { // the process has checked only its own part
+            found = shared_->whole(found);
             Remarks remarks(file.input.path(), reading_.strict);
-            judge_nonfinite(unusable, first_unusable, read.stored_triangles, remarks);
+            judge_nonfinite(found.unusable, found.first_unusable, read.stored_triangles, remarks);
             for (std::string& remark : remarks.take())
                 read.warnings.push_back(std::move(remark));
         }
-        if (box.empty())
+        file.first_corner = found.first_corner;
+        file.triangles = read.stored_triangles - found.unusable;
+        if (found.box.empty())
             throw Error(ErrorKind::input, file.input.path() + ": no triangle of the file is usable");
         builder.add(job.inputs[i], std::move(read), [&](const Mesh&, const Transform& where) {
             if (where != placement)
                 throw Error(ErrorKind::internal, "a streamed mesh stands elsewhere than was thought");
-            return box;
+            return found.box;
         });
     }
     plate_ = builder.finish();
@@ -306,10 +261,8 @@ const Transform& Feed::placement(std::size_t shape) const {
 PlaneCounts Feed::count(const Plan& plan, const Execution& execution) {
     counts_.clear();
     if (files_.empty())
-        in_agreement(processes_, [&] {
-            for (const PlateShape& shape : plate_.shapes)
-                counts_.push_back(count_planes(shape.mesh, plan, execution));
-        });
+        for (const PlateShape& shape : plate_.shapes)
+            counts_.push_back(count_planes(shape.mesh, plan, execution));
     else
         count_streams(plan, execution);
     return counts_of_parts(plan.layers.size());
@@ -334,44 +287,36 @@ void Feed::count_streams(const Plan& plan, const Execution& execution) {
         counters.emplace_back(plan);
         volumes.emplace_back(placement(shape), files_[plate_.shapes[shape].input].first_corner);
     }
-    in_agreement(*among_, [&] {
-        for (File& file : files_) {
-            const std::uint64_t records = file.part ? 0 : file.records.value_or(0);
-            file.cuts.assign((records + fold_chunk - 1) / fold_chunk, {});
-            static_cast<void>(stream(
-                file,
-                [&](const TriangleSoup& batch, std::uint64_t number) {
-                    PlaneRange cut{static_cast<std::uint32_t>(plan.layers.size()), 0};
-                    for (const std::size_t shape : file.shapes) {
-                        const TriangleSoup placed = batch.transformed(placement(shape));
-                        const PlaneRange planes = counters[shape].add(placed);
-                        if (planes.size() > 0)
-                            cut = {std::min(cut.begin, planes.begin), std::max(cut.end, planes.end)};
-                        if (near_[shape].any())
-                            near_[shape].add(placed, 0, placed.size());
-                        if (measure_volume_)
-                            volumes[shape].add(placed, number);
-                    }
-                    if (number < file.cuts.size())
-                        file.cuts[number] = cut;
-                },
-                execution, file.part));
-        }
-    });
+    for (File& file : files_) {
+        const std::uint64_t records = file.part ? 0 : file.records.value_or(0);
+        file.cuts.assign((records + fold_chunk - 1) / fold_chunk, {});
+        static_cast<void>(stream(
+            file,
+            [&](const TriangleSoup& batch, std::uint64_t number) {
+                PlaneRange cut{static_cast<std::uint32_t>(plan.layers.size()), 0};
+                for (const std::size_t shape : file.shapes) {
+                    const TriangleSoup placed = batch.transformed(placement(shape));
+                    const PlaneRange planes = counters[shape].add(placed);
+                    if (planes.size() > 0)
+                        cut = {std::min(cut.begin, planes.begin), std::max(cut.end, planes.end)};
+                    if (near_[shape].any())
+                        near_[shape].add(placed, 0, placed.size());
+                    if (measure_volume_)
+                        volumes[shape].add(placed, number);
+                }
+                if (number < file.cuts.size())
+                    file.cuts[number] = cut;
+            },
+            execution, file.part));
+    }
     std::vector<double> six_volumes(shapes, 0);
     for (std::size_t shape = 0; shape < shapes; ++shape) {
         counts_.push_back(counters[shape].total());
-        among_->sum(counts_.back().numbers());
-        const std::vector<NearFaces> near = near_[shape].found();
-        const std::vector<std::string> messages = among_->gather(Packer().put_all(std::span(near)).take());
-        for (std::size_t process = 0; process < messages.size(); ++process)
-            if (process != among_->process())
-                near_[shape].add(Unpacker(messages[process]).get_all<NearFaces>());
-        if (measure_volume_)
-            for (const std::string& message :
-                 among_->gather(Packer().put_all(std::span(volumes[shape].chunks())).take()))
-                for (const double chunk : Unpacker(message).get_all<double>())
-                    six_volumes[shape] += chunk;
+        std::vector<double> chunks = volumes[shape].chunks();
+        if (shared_ != nullptr)
+            shared_->add_others(counts_.back(), near_[shape], chunks);
+        for (const double chunk : chunks)
+            six_volumes[shape] += chunk;
     }
     volume_mm3_ = 0;
     for (const PlatePart& part : plate_.parts)
@@ -419,29 +364,22 @@ std::vector<Feed::NearPlane> Feed::near_faces() const {
 
 // ------------------------------------------------------------------------------------------------ bring
 
-std::vector<PlaneRange> Feed::bring(const Plan& plan, std::span<const PlaneRange> division,
-                                    const Execution& execution) {
-    assert(division.size() == processes_.size());
-    const PlaneRange mine = division[processes_.process()];
+std::vector<PlaneRange> Feed::bring(const Plan& plan, PlaneRange mine, const Execution& execution) {
     if (in_memory())
         return mine.size() > 0 ? std::vector{mine} : std::vector<PlaneRange>{};
-    in_agreement(*among_, [&] {
-        ranges_ = ranges_of(plan, mine, thread_count(execution));
-        if (is_cheap_to_read_again())
-            plan_ = plan;
-        else
-            store_.emplace(plan, ranges_, counts_);
-    });
+    ranges_ = ranges_of(plan, mine, thread_count(execution));
+    if (is_cheap_to_read_again())
+        plan_ = plan;
+    else
+        store_.emplace(plan, ranges_, counts_);
     for (const PlaneCounts& shape : counts_)
         figures_.triangles_sliced += RangeSurvey(shape).triangles(mine);
-    if (among_->size() > 1)
-        exchange(plan, division, execution);
+    if (shared_ != nullptr)
+        bring_shared(plan, mine, execution);
     else if (store_)
         bring_own(mine, *store_, execution);
-    in_agreement(*among_, [&] {
-        if (execution.progress)
-            execution.progress({Stage::read, bytes_to_read_, bytes_to_read_});
-    });
+    if (execution.progress)
+        execution.progress({Stage::read, bytes_to_read_, bytes_to_read_});
     return ranges_;
 }
 
@@ -473,8 +411,7 @@ std::vector<PlaneRange> Feed::ranges_of(const Plan& plan, PlaneRange mine, unsig
         needed.points_in_flight = ~std::uint64_t{0};
     std::uint64_t overhead =
         JobMemory::overhead(threads, plan.layers.size(), plate_.shapes.size(), measure_volume_) +
-        memory_.of_messages(processes_.size()) +
-        most_points(survey, neighbours_.value_or(0)) * sizeof(Point2);
+        memory_.of_messages(processes_) + most_points(survey, neighbours_.value_or(0)) * sizeof(Point2);
     for (const File& file : files_)
         overhead += file.input.bytes_in_memory();
     std::uint64_t largest = 0;
@@ -532,85 +469,24 @@ void Feed::bring_own(PlaneRange planes, RangeStore& store, const Execution& exec
         throw changed_while_read(path_of(*shape));
 }
 
-/// The third pass of processes that each read a part of the files. A process reads a bounded number of
-/// triangles between exchanges, so that triangles in transit take little memory.
-void Feed::exchange(const Plan& plan, std::span<const PlaneRange> division, const Execution& execution) {
-    using Outgoing = std::vector<std::vector<Triangle3f>>; // by process
-    const RangeFinder finder(plan, division);
-    const std::uint64_t at_once = memory_.triangles_in_a_round(among_->size());
+/// The third pass of processes that each read a part of the files.
+void Feed::bring_shared(const Plan& plan, PlaneRange mine, const Execution& execution) {
+    const RangeFinder finder = shared_->ranges_of_all(plan, mine);
     for (const File& file : files_) {
-        std::uint64_t longest = 0;
-        for (std::size_t p = 0; p < among_->size(); ++p) {
-            const RecordRange part = part_of(file.records.value(), p, among_->size());
-            longest = std::max(longest, part.end - part.begin);
-        }
-        for (std::uint64_t done = 0; done < longest; done += at_once) {
-            const RecordRange now{std::min(file.part->begin + done, file.part->end),
-                                  std::min(file.part->begin + done + at_once, file.part->end)};
-            std::vector<Outgoing> outgoing(plate_.shapes.size(), Outgoing(among_->size()));
-            in_agreement(*among_, [&] {
-                if (now.begin == now.end)
-                    return;
-                std::mutex mutex;
-                static_cast<void>(stream(
-                    file,
-                    [&](const TriangleSoup& batch, std::uint64_t) {
-                        std::vector<RangeFinder::Touched> touched;
-                        for (const std::size_t shape : file.shapes) {
-                            finder.find(batch.transformed(placement(shape)), touched);
-                            Outgoing sorted(among_->size());
-                            for (std::size_t i = 0; i < batch.size(); ++i)
-                                for (std::uint32_t p = touched[i].begin; p < touched[i].end; ++p)
-                                    sorted[p].push_back(batch.stored(i));
-                            const std::lock_guard lock(mutex);
-                            for (std::size_t p = 0; p < sorted.size(); ++p)
-                                outgoing[shape][p].insert(outgoing[shape][p].end(), sorted[p].begin(),
-                                                          sorted[p].end());
-                        }
-                    },
-                    execution, now));
-            });
-            const Stopwatch exchanging;
-            for (const std::size_t shape : file.shapes) {
-                const TriangleSoup incoming = exchanged(outgoing[shape]);
-                outgoing[shape].clear();
-                in_agreement(*among_, [&] { store(shape, incoming, execution); });
-            }
-            figures_.exchange_seconds += exchanging.seconds();
-        }
+        std::vector<SharedReading::PlacedShape> shapes;
+        for (const std::size_t shape : file.shapes)
+            shapes.emplace_back(shape, placement(shape));
+        shared_->exchange(
+            file.records.value(), memory_.triangles_in_a_round(processes_), shapes, finder,
+            [&](const RecordRange& records, const TriangleSink& sink) {
+                static_cast<void>(stream(file, sink, execution, records));
+            },
+            [&](std::size_t shape, const TriangleSoup& triangles) { store(shape, triangles, execution); });
     }
-    in_agreement(*among_, [&] {
-        if (const std::optional<std::size_t> shape = store_->incomplete())
-            throw changed_while_read(path_of(*shape));
-    });
-}
-
-/// Sends triangles to the other processes. Returns the received triangles, and those that this process keeps.
-TriangleSoup Feed::exchanged(std::span<const std::vector<Triangle3f>> outgoing) {
-    std::vector<std::uint64_t> sizes;
-    std::vector<std::span<const std::byte>> out;
-    for (const std::vector<Triangle3f>& triangles : outgoing) {
-        sizes.push_back(triangles.size());
-        out.push_back(std::as_bytes(std::span(triangles)));
-        figures_.bytes_sent += out.back().size();
-    }
-    figures_.bytes_sent -= out[among_->process()].size(); // not sent
-    const std::vector<std::uint64_t> coming = among_->exchange(sizes);
-    std::uint64_t total = 0;
-    for (const std::uint64_t count : coming)
-        total += count;
-    std::shared_ptr<const PageArray<Triangle3f>> memory;
-    in_agreement(*among_, [&] { memory = std::make_shared<const PageArray<Triangle3f>>(total); });
-    std::vector<std::span<std::byte>> in;
-    std::uint64_t at = 0;
-    for (const std::uint64_t count : coming) {
-        in.push_back(std::as_writable_bytes(memory->span().subspan(at, count)));
-        at += count;
-    }
-    assert(at == total);
-    among_->exchange(out, in);
-    return {TriangleSoup::KnownFinite{}, memory, reinterpret_cast<const std::byte*>(memory->data()),
-            sizeof(Triangle3f), static_cast<std::size_t>(total)};
+    figures_.bytes_sent = shared_->bytes_sent();
+    figures_.exchange_seconds = shared_->seconds();
+    if (const std::optional<std::size_t> shape = store_->incomplete())
+        throw changed_while_read(path_of(*shape));
 }
 
 void Feed::store(std::size_t shape, const TriangleSoup& triangles, const Execution& execution) {

@@ -4,14 +4,15 @@
 
 #include "lamella/core/execution.hpp"
 #include "lamella/pipeline/file_job.hpp"
+#include "lamella/pipeline/file_result.hpp"
 #include "lamella/pipeline/plate.hpp"
-#include "lamella/pipeline/processes.hpp"
 #include "lamella/read/mesh_input.hpp"
 #include "lamella/slicing/plan.hpp"
 #include "lamella/slicing/slice.hpp"
 
 #include "pipeline/job_memory.hpp"
 #include "pipeline/range_store.hpp"
+#include "pipeline/shared_reading.hpp"
 #include "slicing/near_faces.hpp"
 #include "slicing/plane_ranges.hpp"
 
@@ -27,7 +28,7 @@ namespace lamella {
 
 /// The plate of a job. Its meshes are in memory, or its triangles stay in their files.
 ///
-/// If meshes do not fit into memory, or if several processes divide the files, triangles are streamed in
+/// If meshes do not fit into memory, or if several processes share the reading, triangles are streamed in
 /// three passes:
 ///
 ///     open     the files, and measure their extent
@@ -36,17 +37,18 @@ namespace lamella {
 ///
 /// Reading a file again is faster than storing its triangles, and takes no disk space. So if the triangles of
 /// each range of planes are contiguous enough in the file, no triangle is stored, and a range is read when
-/// `take` is called. If several processes slice the job and the files can be divided, each process reads its
-/// part of every file, and the processes communicate after each pass. So each process must create one Feed of
-/// the same job, and all must call its functions in the same order.
+/// `take` is called. Several processes share the reading of binary STL files (SharedReading): each passes
+/// over its part of every file. All counts are those of the whole files, nevertheless.
 class Feed {
   public:
-    /// Reads the files of the job. If they do not fit into the memory of the job, or if several processes can
-    /// divide them, only measures the files. Throws the errors of load_plate, and Error{limit} if the meshes
-    /// fit into memory neither as a whole nor in ranges.
-    Feed(const FileJob& job, const Engine& engine, Communicator& processes, const Execution& execution);
+    /// Reads the files of the job. If they do not fit into the memory of the job, or if several processes
+    /// share the reading, only measures the files. If the files cannot be divided, `shared` has no effect on
+    /// reading. Throws the errors of load_plate, and Error{limit} if the meshes fit into memory neither as a
+    /// whole nor in ranges.
+    Feed(const FileJob& job, const Engine& engine, const Execution& execution,
+         SharedReading* shared = nullptr);
     /// Takes a plate that is already in memory.
-    Feed(const FileJob& job, Plate plate, Communicator& processes);
+    Feed(const FileJob& job, Plate plate);
 
     /// Files, parts and boxes; meshes only if they are in memory.
     [[nodiscard]] const Plate& plate() const noexcept { return plate_; }
@@ -57,19 +59,19 @@ class Feed {
     /// True if the meshes are in memory. They are then sliced at once, and need not be counted before.
     [[nodiscard]] bool in_memory() const noexcept { return files_.empty(); }
 
-    /// Number of triangles of a shape with finite coordinates, over all processes.
+    /// Number of triangles of a shape with finite coordinates.
     [[nodiscard]] std::uint64_t triangles(std::size_t shape) const;
 
-    /// Counts the triangles of all parts on the planes, over all processes.
+    /// Counts the triangles of all parts on the planes.
     [[nodiscard]] PlaneCounts count(const Plan& plan, const Execution& execution);
     /// Signed volume of all parts. Requires layer statistics, triangles that stay in their files, and a call
     /// of `count`.
     [[nodiscard]] double volume_mm3() const noexcept { return volume_mm3_; }
 
-    /// Horizontal faces of the parts of a file that lie within rounding error of a plane, over all processes,
-    /// in ascending planes. If the triangles stay in their files, requires a call of `count` with the same
-    /// plan. Otherwise requires a call of `begin_near_faces`, then calls of
-    /// `show_near_faces` for all triangles of all shapes, from any threads.
+    /// Horizontal faces of the parts of a file that lie within rounding error of a plane, in ascending
+    /// planes. If the triangles stay in their files, requires a call of `count` with the same plan. Otherwise
+    /// requires a call of `begin_near_faces`, then calls of `show_near_faces` for all triangles of all
+    /// shapes, from any threads.
     struct NearPlane {
         std::size_t file = 0;
         std::uint32_t plane = 0;
@@ -84,10 +86,10 @@ class Feed {
     [[nodiscard]] bool may_have_near_faces() const;
     [[nodiscard]] std::vector<NearPlane> near_faces() const;
 
-    /// Divides the planes of this process into ranges that fit its memory, and stores their triangles unless
-    /// `take` reads them from the files. `division` lists the planes of each process. Requires a call of
-    /// `count` with the same plan. Throws Error{limit} if a single layer does not fit.
-    [[nodiscard]] std::vector<PlaneRange> bring(const Plan& plan, std::span<const PlaneRange> division,
+    /// Divides the planes of `mine` into ranges that fit the memory, and stores their triangles unless `take`
+    /// reads them from the files. Requires a call of `count` with the same plan if the triangles stay in
+    /// their files. Throws Error{limit} if a single layer does not fit.
+    [[nodiscard]] std::vector<PlaneRange> bring(const Plan& plan, PlaneRange mine,
                                                 const Execution& execution);
 
     /// Returns a plate with the triangles of a range; `range` is an index into the result of `bring`. Each
@@ -105,7 +107,7 @@ class Feed {
         std::optional<std::uint64_t> records; ///< number of records of a binary file, when it was opened
         std::optional<RecordRange> part;      ///< read by this process; unset: the whole file
         std::vector<std::size_t> shapes;      ///< of the plate that are made from it
-        std::uint64_t triangles = 0;          ///< number with finite coordinates, over all processes
+        std::uint64_t triangles = 0;          ///< number with finite coordinates
         Point3f first_corner;                 ///< as stored
         /// For each chunk of a binary file that one process reads: the range of planes that cut its
         /// triangles. Empty for other files.
@@ -127,14 +129,12 @@ class Feed {
                                                     unsigned threads) const;
     [[nodiscard]] bool is_cheap_to_read_again() const;
     void bring_own(PlaneRange planes, RangeStore& store, const Execution& execution);
-    void exchange(const Plan& plan, std::span<const PlaneRange> division, const Execution& execution);
-    [[nodiscard]] TriangleSoup exchanged(std::span<const std::vector<Triangle3f>> outgoing);
+    void bring_shared(const Plan& plan, PlaneRange mine, const Execution& execution);
     void store(std::size_t shape, const TriangleSoup& triangles, const Execution& execution);
 
     JobMemory memory_;
-    Communicator& processes_;
-    Communicator*
-        among_; ///< the processes that divide the files; only this process if each process reads all files
+    std::size_t processes_ = 1;
+    SharedReading* shared_ = nullptr; ///< null if this process reads all of the files
     MeshReadOptions reading_;
     bool measure_volume_;
     std::optional<std::uint32_t> neighbours_; ///< of each scanned plane; unset if none is scanned
@@ -143,7 +143,7 @@ class Feed {
     std::vector<File> files_; ///< empty if the meshes are in memory
     std::uint64_t bytes_to_read_ = 0;
     std::uint64_t bytes_read_ = 0;
-    std::vector<PlaneCounts> counts_; ///< by shape, over all processes
+    std::vector<PlaneCounts> counts_; ///< by shape
     std::deque<NearFaceFinder> near_; ///< by shape
     double volume_mm3_ = 0;
     std::vector<PlaneRange> ranges_;

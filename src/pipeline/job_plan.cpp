@@ -184,26 +184,22 @@ PlaneRange with_neighbours(const FileJob& job, PlaneRange planes, std::size_t pl
     return widened(planes, job.scan->downskin.layers, job.scan->upskin.layers, {0, last});
 }
 
-std::vector<PlaneRange> divide(const FileJob& job, const JobPlan& planes, Feed& feed, Communicator& processes,
-                               const Execution& execution) {
+PlaneRange divide(const FileJob& job, const JobPlan& planes, Feed& feed, const Shard& process,
+                  const Execution& execution) {
     const PlaneRange written = planes.written;
     if (job.shard && (job.shard->number < 1 || job.shard->number > job.shard->count))
         throw Error(ErrorKind::usage, fmt::format("there is no shard {} of {}; they are counted from 1",
                                                   job.shard->number, job.shard->count));
-    if (!job.shard && processes.size() == 1 && feed.in_memory())
-        return {written};
+    if (!job.shard && process.count == 1 && feed.in_memory())
+        return written;
     const RangeSurvey survey(part_of(feed.count(planes.plan, execution), written));
-    std::vector<PlaneRange> division;
-    if (job.shard)
-        division = {divide_evenly(survey, job.shard->count)[job.shard->number - 1]};
-    else
-        division = divide_evenly(
-            survey, static_cast<std::uint32_t>(std::min<std::size_t>(processes.size(), written.size())));
-    for (PlaneRange& part : division)
-        part = {written.begin + part.begin, written.begin + part.end};
+    Shard shard = job.shard.value_or(process);
     if (!job.shard)
-        division.resize(processes.size(), {written.end, written.end});
-    return division;
+        shard.count = std::min(shard.count, written.size());
+    if (shard.number > shard.count)
+        return {written.end, written.end};
+    const PlaneRange range = divide_evenly(survey, shard.count)[shard.number - 1];
+    return {written.begin + range.begin, written.begin + range.end};
 }
 
 } // namespace lamella

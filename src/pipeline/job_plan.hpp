@@ -5,13 +5,11 @@
 #include "lamella/core/execution.hpp"
 #include "lamella/pipeline/file_job.hpp"
 #include "lamella/pipeline/plate.hpp"
-#include "lamella/pipeline/processes.hpp"
 #include "lamella/slicing/plan.hpp"
 
 #include "pipeline/feed.hpp"
 
 #include <cstddef>
-#include <vector>
 
 namespace lamella {
 
@@ -31,10 +29,10 @@ void check_heights(const Plate& plate);
 /// Returns a range extended by the neighbours that skins depend on, in a plan of `planned` planes.
 [[nodiscard]] PlaneRange with_neighbours(const FileJob& job, PlaneRange planes, std::size_t planned);
 
-/// Divides the planes that are written into ranges of equal work. Returns the range of each process, or the
-/// range of the shard. If there are more processes than planes, the last ranges are empty. Throws
-/// Error{usage} for a shard that does not exist.
-[[nodiscard]] std::vector<PlaneRange> divide(const FileJob& job, const JobPlan& planes, Feed& feed,
-                                             Communicator& processes, const Execution& execution);
+/// Divides the planes that are written into ranges of equal work, and returns the range of the shard of the
+/// job or, without one, of a process. If there are more processes than planes, the last ranges are empty.
+/// Throws Error{usage} for a shard that does not exist.
+[[nodiscard]] PlaneRange divide(const FileJob& job, const JobPlan& planes, Feed& feed, const Shard& process,
+                                const Execution& execution);
 
 } // namespace lamella

@@ -4,8 +4,6 @@
 #include "lamella/contour/normal_form.hpp"
 #include "lamella/contour/open_gaps.hpp"
 
-#include "pipeline/packed.hpp"
-
 #include <algorithm>
 #include <cassert>
 #include <cstddef>
@@ -132,22 +130,19 @@ std::uint64_t LayerTotals::points() const noexcept {
     return sum;
 }
 
-void LayerTotals::gather(Communicator& processes) {
-    if (processes.size() == 1)
-        return;
-    Packer mine;
+void LayerTotals::move_to(Packer& message) {
     for (const Counts& part : parts_)
-        mine.put(part.contours.load())
+        message.put(part.contours.load())
             .put(part.open_chains.load())
             .put(part.inverted_rings.load())
             .put(part.points.load());
-    mine.put_all(std::span<const Row>(rows_))
+    message.put_all(std::span<const Row>(rows_))
         .put_all(std::span<const FileResult::Gaps>(closed_))
         .put_all(std::span<const LayerChanges>(changes_))
         .put_all(std::span<const ScanFigures>(vectors_))
         .put_all(std::span<const PlaneFinding>(findings_.take()));
     for (const LayerStatistics& layer : statistics_)
-        mine.put(layer.index)
+        message.put(layer.index)
             .put(layer.z)
             .put(layer.thickness)
             .put(layer.measure)
@@ -160,38 +155,38 @@ void LayerTotals::gather(Communicator& processes) {
     vectors_.clear();
     statistics_.clear();
     parts_ = std::vector<Counts>(parts_.size());
+}
+
+void LayerTotals::add(Unpacker& message) { // in the order of put()
     const auto append = [](auto& to, const auto& more) {
         to.insert(to.end(), more.begin(), more.end());
     };
-    for (const std::string& message : processes.gather(mine.take())) {
-        Unpacker from(message);
-        for (Counts& part : parts_) {
-            part.contours += from.get<std::uint64_t>();
-            part.open_chains += from.get<std::uint64_t>();
-            part.inverted_rings += from.get<std::uint64_t>();
-            part.points += from.get<std::uint64_t>();
-        }
-        const std::uint64_t below = rows_.size();
-        append(rows_, from.get_all<Row>());
-        append(closed_, from.get_all<FileResult::Gaps>());
-        append(changes_, from.get_all<LayerChanges>());
-        append(vectors_, from.get_all<ScanFigures>());
-        std::vector<PlaneFinding> found = from.get_all<PlaneFinding>();
-        for (PlaneFinding& one : found)
-            one.plane += below;
-        findings_.add(found);
-        while (!from.empty()) // in the order of put()
-            statistics_.push_back({.index = from.get<std::uint64_t>(),
-                                   .z = from.get<double>(),
-                                   .thickness = from.get<double>(),
-                                   .measure = from.get<LayerMeasure>(),
-                                   .findings = {},
-                                   .joins = from.get_all<GapJoin>(),
-                                   .hash = from.get<std::uint64_t>(),
-                                   .changes = from.get<LayerChanges>(),
-                                   .scan = {},
-                                   .scan_hash = 0});
+    for (Counts& part : parts_) {
+        part.contours += message.get<std::uint64_t>();
+        part.open_chains += message.get<std::uint64_t>();
+        part.inverted_rings += message.get<std::uint64_t>();
+        part.points += message.get<std::uint64_t>();
     }
+    const std::uint64_t below = rows_.size();
+    append(rows_, message.get_all<Row>());
+    append(closed_, message.get_all<FileResult::Gaps>());
+    append(changes_, message.get_all<LayerChanges>());
+    append(vectors_, message.get_all<ScanFigures>());
+    std::vector<PlaneFinding> found = message.get_all<PlaneFinding>();
+    for (PlaneFinding& one : found)
+        one.plane += below;
+    findings_.add(found);
+    while (!message.empty())
+        statistics_.push_back({.index = message.get<std::uint64_t>(),
+                               .z = message.get<double>(),
+                               .thickness = message.get<double>(),
+                               .measure = message.get<LayerMeasure>(),
+                               .findings = {},
+                               .joins = message.get_all<GapJoin>(),
+                               .hash = message.get<std::uint64_t>(),
+                               .changes = message.get<LayerChanges>(),
+                               .scan = {},
+                               .scan_hash = 0});
 }
 
 void LayerTotals::store_findings(FileResult& result) const {

@@ -5,10 +5,10 @@
 #include "lamella/contour/layer.hpp"
 #include "lamella/findings/findings.hpp"
 #include "lamella/pipeline/file_result.hpp"
-#include "lamella/pipeline/processes.hpp"
 #include "lamella/slicing/plan.hpp"
 
 #include "pipeline/layer_job.hpp"
+#include "pipeline/packed.hpp"
 #include "pipeline/plane_scan.hpp"
 
 #include <atomic>
@@ -32,7 +32,7 @@ class LayerTotals {
     void add(std::size_t plane, std::span<const Layer> parts, std::vector<GapJoin> joins,
              const LayerChanges& changes, std::span<const InvertedRings> inverted = {},
              std::span<const Layer> bodies = {});
-    /// Adds a finding about a file on one of the planes, which every process knows; after `gather`.
+    /// Adds a finding about a file on one of the planes.
     void add(const PlaneFinding& found) { findings_.add(found); }
     /// Adds the overlap of a part with other parts on a plane. May be called from any thread.
     void add_overlap(std::size_t plane, std::size_t part, double area_mm2);
@@ -43,8 +43,10 @@ class LayerTotals {
     /// Number of points of the layers that were added.
     [[nodiscard]] std::uint64_t points() const noexcept;
 
-    /// Collects the rows of all processes on every process. Call it once, after all layers were added.
-    void gather(Communicator& processes);
+    /// Moves all rows to the end of a message. Call it after all layers were added.
+    void move_to(Packer& message);
+    /// Adds the rest of a message, the rows of planes above those added before.
+    void add(Unpacker& message);
 
     /// Stores counts, sums and rows.
     void store_in(FileResult& result) const;

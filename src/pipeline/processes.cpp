@@ -1,40 +1,71 @@
 #include "lamella/pipeline/processes.hpp"
 
 #include "lamella/core/error.hpp"
+#include "lamella/pipeline/slice_file.hpp"
+
+#include "pipeline/agreement.hpp"
+#include "pipeline/file_slicer.hpp"
+#include "pipeline/job_output.hpp"
+#include "pipeline/packed.hpp"
+#include "pipeline/shared_reading.hpp"
+#include "pipeline/shared_writer.hpp"
 
 #include <algorithm>
+#include <memory>
+#include <string>
 
 namespace lamella {
 namespace {
 
-class Alone final : public Communicator {
-  public:
-    [[nodiscard]] std::size_t process() const noexcept override { return 0; }
-    [[nodiscard]] std::size_t size() const noexcept override { return 1; }
-    void sum(std::span<std::uint64_t>) override {}
-    [[nodiscard]] std::vector<std::string> gather(std::string_view mine) override {
-        return {std::string(mine)};
+/// Throws for a job that only a single process can do.
+void check_shared_job(const FileJob& job) {
+    if (job.shard)
+        throw Error(ErrorKind::usage,
+                    "processes share out all layers among themselves, not those of a shard");
+    if (!job.report.path.empty())
+        throw Error(ErrorKind::usage,
+                    "no process has all layers for a page of the run; write a slice file, and "
+                    "let lamella view make a page of it");
+    if (std::any_of(job.inputs.begin(), job.inputs.end(),
+                    [](const PlateInput& input) { return input.path == "-"; }))
+        throw Error(ErrorKind::usage,
+                    "standard input reaches one of the processes only; give the name of a file");
+}
+
+FileResult slice_together(const FileJob& job, Agreement& processes, const Execution& execution) {
+    check_shared_job(job);
+    SharedReading reading(processes);
+    const Shard mine{static_cast<std::uint32_t>(processes.process() + 1),
+                     static_cast<std::uint32_t>(processes.size())};
+    FileSlicer slicer(job, execution, &reading, mine);
+    const OutputFiles files = slicer.files();
+    std::unique_ptr<LayerWriter> writer;
+    if (files.format != nullptr)
+        writer = std::make_unique<SharedWriter>(files, slicer.info(), slicer.mine(), processes,
+                                                slicer.memory().of_output());
+    JobOutput output(files, slicer.info(), std::move(writer));
+    slicer.slice(output);
+    Packer figures;
+    slicer.move_to(figures);
+    for (const std::string& message : processes.gather(figures.take())) {
+        Unpacker from(message);
+        slicer.add(from);
     }
-    [[nodiscard]] std::vector<std::uint64_t> exchange(std::span<const std::uint64_t> outgoing) override {
-        return {outgoing.begin(), outgoing.end()};
-    }
-    void exchange(std::span<const std::span<const std::byte>> outgoing,
-                  std::span<const std::span<std::byte>> incoming) override {
-        std::copy(outgoing.front().begin(), outgoing.front().end(), incoming.front().begin());
-    }
-    void send(std::size_t, std::string_view) override {
-        throw Error(ErrorKind::internal, "a message to another process, and there is none");
-    }
-    [[nodiscard]] std::string receive(std::size_t) override {
-        throw Error(ErrorKind::internal, "a message from another process, and there is none");
-    }
-};
+    FileResult result = slicer.finish(output);
+    const std::string own = Packer().put(result.processes.front()).take();
+    result.processes.clear();
+    for (const std::string& message : processes.gather(own))
+        result.processes.push_back(Unpacker(message).get<ProcessFigures>());
+    return result;
+}
 
 } // namespace
 
-Communicator& alone() noexcept {
-    static Alone process;
-    return process;
+FileResult slice_file(const FileJob& job, const Execution& execution, Communicator& processes) {
+    if (processes.size() == 1)
+        return slice_file(job, execution);
+    Agreement agreement(processes);
+    return agreement.run([&] { return slice_together(job, agreement, execution); });
 }
 
 } // namespace lamella

@@ -67,7 +67,7 @@ FileResult scan_layers(const std::string& path, const LayerFormat& format, const
     for (const Layer& layer : source.planes)
         planes.push_back({layer.index, layer.z, layer.bottom, layer.top});
     const PlaneRange all{0, static_cast<std::uint32_t>(planes.size())};
-    JobOutput output(files, with_exposures(info, strategy), all);
+    JobOutput output(files, with_exposures(info, strategy));
     LayerProcessor processor(std::move(job), planes, all, all, output);
     const PlaneSink process = [&](std::size_t plane, const ScanVectors& layers) {
         return processor.prepare(static_cast<std::uint32_t>(plane), layers.polylines);

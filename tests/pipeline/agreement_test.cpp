@@ -4,10 +4,11 @@
 
 #include <gtest/gtest.h>
 
-#include <atomic>
 #include <cstddef>
+#include <cstdint>
 #include <new>
 #include <optional>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -29,14 +30,31 @@ std::optional<Error> heard_of(const std::vector<std::optional<Error>>& failures)
     return cancelled;
 }
 
-TEST(Agreement, WaitsUntilTheStepIsDoneOnAllProcesses) {
-    for (std::size_t processes = 1; processes <= 4; ++processes) {
-        std::atomic<std::size_t> done{0};
+TEST(Agreement, PassesOnTheWordsSumsAndValuesOfAllProcesses) {
+    for (std::size_t processes = 1; processes <= 4; ++processes)
         test::run_processes(processes, [&](Communicator& own) {
-            in_agreement(own, [&] { ++done; });
-            EXPECT_EQ(done, processes);
+            Agreement agreement(own);
+            const std::string result = agreement.run([&] {
+                std::vector<std::string> words = agreement.gather(std::string(own.process(), 'x'));
+                EXPECT_EQ(words.size(), processes);
+                std::vector<std::uint64_t> one{1};
+                agreement.sum(one);
+                EXPECT_EQ(one.front(), processes);
+                // From process p to q: p numbers 10 p + q.
+                std::vector<std::vector<std::uint64_t>> numbers;
+                for (std::size_t to = 0; to < processes; ++to)
+                    numbers.emplace_back(own.process(), 10 * own.process() + to);
+                const std::vector<std::span<const std::uint64_t>> outgoing(numbers.begin(), numbers.end());
+                const auto received = agreement.exchange<std::uint64_t>(outgoing);
+                std::vector<std::uint64_t> expected;
+                for (std::size_t from = 0; from < processes; ++from)
+                    expected.insert(expected.end(), from, 10 * from + own.process());
+                EXPECT_EQ(std::vector<std::uint64_t>(received->span().begin(), received->span().end()),
+                          expected);
+                return words.back();
+            });
+            EXPECT_EQ(result, std::string(processes - 1, 'x'));
         });
-    }
 }
 
 TEST(Agreement, HasAllThrowWhatTheFirstThrewAndRatherNotThatItWasCancelled) {
@@ -53,9 +71,11 @@ TEST(Agreement, HasAllThrowWhatTheFirstThrewAndRatherNotThatItWasCancelled) {
             }
         const std::optional<Error> heard = heard_of(failures);
         const auto step = [&](Communicator& own) {
-            in_agreement(own, [&] {
+            Agreement agreement(own);
+            agreement.run([&] {
                 if (const std::optional<Error>& failure = failures[own.process()])
                     throw Error(*failure);
+                agreement.gather("well");
             });
         };
         if (heard) {
@@ -71,9 +91,11 @@ TEST(Agreement, HasAllThrowWhatTheFirstThrewAndRatherNotThatItWasCancelled) {
 TEST(Agreement, ReportsOtherExceptionsInTheWordsOfAnError) {
     const auto failing_with = [](const auto& exception) {
         return test::common_failure(3, [&](Communicator& own) {
-            in_agreement(own, [&] {
+            Agreement agreement(own);
+            agreement.run([&] {
                 if (own.process() == 2)
                     throw exception;
+                agreement.gather({});
             });
         });
     };
@@ -85,23 +107,31 @@ TEST(Agreement, ReportsOtherExceptionsInTheWordsOfAnError) {
     EXPECT_STREQ(other.what(), "no such row");
 }
 
-TEST(Agreement, LeavesProcessesAtTheSamePlaceAfterAFailure) {
-    test::run_processes(4, [](Communicator& own) {
-        for (std::size_t failing = 0; failing < own.size(); ++failing)
-            EXPECT_THROW(in_agreement(own,
-                                      [&] {
-                                          if (own.process() == failing)
-                                              throw Error(ErrorKind::input, "this one");
-                                      }),
-                         Error);
-        std::vector<std::uint64_t> one{1};
-        own.sum(one);
-        EXPECT_EQ(one.front(), own.size());
-    });
-}
-
-TEST(Agreement, OfAProcessAlonePassesWhateverIsThrownUnchanged) {
-    EXPECT_THROW(in_agreement(alone(), [] { throw std::out_of_range("no such row"); }), std::out_of_range);
+TEST(Agreement, EndsTheWaitingOfOthersWhereverOneFails) {
+    for (int failing_step = 0; failing_step < 4; ++failing_step) {
+        const Error error = test::common_failure(3, [&](Communicator& own) {
+            Agreement agreement(own);
+            agreement.run([&] {
+                int step = 0;
+                const auto fail_here = [&] {
+                    if (own.process() == 1 && step++ == failing_step)
+                        throw Error(ErrorKind::input, "this one");
+                };
+                std::vector<std::uint64_t> numbers(3, 7);
+                fail_here();
+                agreement.sum(numbers);
+                fail_here();
+                agreement.gather("words");
+                fail_here();
+                const std::vector<std::span<const std::uint64_t>> outgoing(3, numbers);
+                static_cast<void>(agreement.exchange<std::uint64_t>(outgoing));
+                fail_here();
+                agreement.gather({});
+            });
+        });
+        EXPECT_EQ(error.kind(), ErrorKind::input);
+        EXPECT_STREQ(error.what(), "this one");
+    }
 }
 
 } // namespace

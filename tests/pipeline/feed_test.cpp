@@ -76,7 +76,9 @@ TEST_F(FeedOfFiles, GivesEachRangeTheTrianglesOfItsLayers) {
             std::mutex mutex;
             test::run_processes(processes, [&](Communicator& own) {
                 const Execution execution{.threads = 2};
-                Feed feed(job_, engines().front(), own, execution);
+                Agreement agreement(own);
+                SharedReading reading(agreement);
+                Feed feed(job_, engines().front(), execution, processes > 1 ? &reading : nullptr);
                 EXPECT_EQ(feed.plate().box, whole.box);
                 if (little && processes == 1) {
                     EXPECT_TRUE(feed.in_ranges());
@@ -92,13 +94,11 @@ TEST_F(FeedOfFiles, GivesEachRangeTheTrianglesOfItsLayers) {
                 if (feed.meshes() == nullptr) {
                     EXPECT_NEAR(feed.volume_mm3(), sum, 1e-9 * sum);
                 }
-                std::vector<PlaneRange> division;
-                const auto n = static_cast<std::uint32_t>(planes.layers.size());
-                for (std::uint32_t p = 0; p < own.size(); ++p)
-                    division.push_back({n * p / static_cast<std::uint32_t>(own.size()),
-                                        n * (p + 1) / static_cast<std::uint32_t>(own.size())});
-                const std::vector<PlaneRange> ranges = feed.bring(planes, division, execution);
-                std::uint32_t next = division[own.process()].begin;
+                const std::size_t n = planes.layers.size();
+                const PlaneRange mine{static_cast<std::uint32_t>(n * own.process() / own.size()),
+                                      static_cast<std::uint32_t>(n * (own.process() + 1) / own.size())};
+                const std::vector<PlaneRange> ranges = feed.bring(planes, mine, execution);
+                std::uint32_t next = mine.begin;
                 for (std::size_t r = 0; r < ranges.size(); ++r) {
                     EXPECT_EQ(ranges[r].begin, next) << "without gaps";
                     next = ranges[r].end;
@@ -109,7 +109,7 @@ TEST_F(FeedOfFiles, GivesEachRangeTheTrianglesOfItsLayers) {
                         ++taken[ranges[r].begin + k];
                     }
                 }
-                EXPECT_EQ(next, division[own.process()].end);
+                EXPECT_EQ(next, mine.end);
             });
             EXPECT_EQ(hashes, test::hashes(expected)) << little << ' ' << processes;
             EXPECT_EQ(std::count(taken.begin(), taken.end(), 1), std::ssize(taken)) << "each plane once";
@@ -122,11 +122,11 @@ TEST_F(FeedOfFiles, HoldsNegativeFilesInRangesToo) {
     const std::vector<std::uint64_t> expected = test::hashes(slice(load_plate(job_.inputs), planes));
     EXPECT_NE(expected, test::hashes(slice(load_plate(std::span(job_.inputs).first(1)), planes)));
     job_.max_memory = little_memory(1);
-    Feed feed(job_, engines().front(), alone(), {});
+    Feed feed(job_, engines().front(), {});
     EXPECT_TRUE(feed.in_ranges());
     (void)feed.count(planes, {});
-    const std::vector<PlaneRange> division{{0, static_cast<std::uint32_t>(planes.layers.size())}};
-    const std::vector<PlaneRange> ranges = feed.bring(planes, division, {});
+    const PlaneRange all{0, static_cast<std::uint32_t>(planes.layers.size())};
+    const std::vector<PlaneRange> ranges = feed.bring(planes, all, {});
     if constexpr (!test::slowed) { // else the mesh is small
         EXPECT_GT(ranges.size(), 1U);
     }
@@ -137,20 +137,12 @@ TEST_F(FeedOfFiles, HoldsNegativeFilesInRangesToo) {
     EXPECT_EQ(test::hashes(layers), expected);
 }
 
-TEST_F(FeedOfFiles, RefusesStandardInputForSeveralProcesses) {
-    job_.inputs = {{.path = "-"}};
-    const Error error = test::common_failure(
-        2, [&](Communicator& own) { const Feed feed(job_, engines().front(), own, {}); });
-    EXPECT_EQ(error.kind(), ErrorKind::usage);
-    EXPECT_NE(std::string(error.what()).find("standard input"), std::string::npos);
-}
-
 TEST_F(FeedOfFiles, NamesTheOptionThatNeedsTheWholeMesh) {
     job_.max_memory = 1'000'000;
     job_.inspect = true;
     test::expect_error(ErrorKind::limit,
                        {"torus.stl", "`max_memory`", "`inspect`, which needs the whole mesh"},
-                       [&] { const Feed feed(job_, engines().front(), alone(), {.threads = 1}); });
+                       [&] { const Feed feed(job_, engines().front(), {.threads = 1}); });
 }
 
 class FeedOfOneFile : public testing::Test {
@@ -177,7 +169,7 @@ class FeedOfOneFile : public testing::Test {
 
 TEST_F(FeedOfOneFile, ReadsItToMemoryIfItFits) {
     const Box3 box = load_plate(job_.inputs).box;
-    Feed feed(job_, engines().front(), alone(), {});
+    Feed feed(job_, engines().front(), {});
     ASSERT_NE(feed.meshes(), nullptr);
     EXPECT_TRUE(feed.in_memory());
     EXPECT_FALSE(feed.in_ranges());
@@ -185,7 +177,7 @@ TEST_F(FeedOfOneFile, ReadsItToMemoryIfItFits) {
     EXPECT_EQ(feed.triangles(0), body_.size());
 
     set_corner(70, std::numeric_limits<float>::quiet_NaN());
-    Feed lacking(job_, engines().front(), alone(), {});
+    Feed lacking(job_, engines().front(), {});
     ASSERT_NE(lacking.meshes(), nullptr);
     EXPECT_EQ(lacking.triangles(0), body_.size() - 1);
     EXPECT_EQ(lacking.plate().files.front().warnings.size(), 1U);

@@ -4,7 +4,6 @@
 #include "parts/shapes.hpp"
 #include "pipeline/job_plan.hpp"
 #include "pipeline/plate_builder.hpp"
-#include "thread_processes.hpp"
 
 #include <gtest/gtest.h>
 
@@ -98,22 +97,19 @@ TEST(JobPlan, DividesThePlanesAmongShardsAndAmongProcessesWithoutGapsOrOverlaps)
     Sphere sphere;
     const JobPlan planes = plan_job(sphere.job, sphere.plate, {});
     for (const std::uint32_t count : {1U, 2U, 3U, 7U, 20U}) {
-        std::vector<PlaneRange> shards;
+        std::uint32_t end = 0;
         for (std::uint32_t number = 1; number <= count; ++number) {
             sphere.job.shard = Shard{number, count};
-            Feed feed(sphere.job, sphere.plate, alone());
-            const std::vector<PlaneRange> division = divide(sphere.job, planes, feed, alone(), {});
-            ASSERT_EQ(division.size(), 1U);
-            EXPECT_GT(division.front().size(), 0U);
-            EXPECT_EQ(division.front().begin, shards.empty() ? 0 : shards.back().end);
-            shards.push_back(division.front());
+            Feed feed(sphere.job, sphere.plate);
+            const PlaneRange shard = divide(sphere.job, planes, feed, {}, {});
+            EXPECT_GT(shard.size(), 0U);
+            EXPECT_EQ(shard.begin, end);
+            end = shard.end;
+            sphere.job.shard.reset();
+            EXPECT_EQ(divide(sphere.job, planes, feed, {number, count}, {}), shard)
+                << "processes get the same ranges";
         }
-        EXPECT_EQ(shards.back().end, 20U);
-        sphere.job.shard.reset();
-        test::run_processes(count, [&](Communicator& own) {
-            Feed feed(sphere.job, sphere.plate, own);
-            EXPECT_EQ(divide(sphere.job, planes, feed, own, {}), shards) << "processes get the same ranges";
-        });
+        EXPECT_EQ(end, 20U);
     }
 }
 
@@ -123,24 +119,21 @@ TEST(JobPlan, LeavesTheLastOfTooManyProcessesWithoutPlanes) {
     sphere.job.scan.emplace();
     const JobPlan planes = plan_job(sphere.job, sphere.plate, {});
     const PlaneRange written = planes.written;
-    test::run_processes(5, [&](Communicator& own) {
-        Feed feed(sphere.job, sphere.plate, own);
-        const std::vector<PlaneRange> division = divide(sphere.job, planes, feed, own, {});
-        ASSERT_EQ(division.size(), 5U);
-        for (std::uint32_t i = 0; i < 5; ++i)
-            EXPECT_EQ(division[i], (PlaneRange{std::min(written.begin + i, written.end),
-                                               std::min(written.begin + i + 1, written.end)}));
-    });
+    Feed feed(sphere.job, sphere.plate);
+    for (std::uint32_t i = 0; i < 5; ++i)
+        EXPECT_EQ(divide(sphere.job, planes, feed, {i + 1, 5}, {}),
+                  (PlaneRange{std::min(written.begin + i, written.end),
+                              std::min(written.begin + i + 1, written.end)}));
 }
 
 TEST(JobPlan, RefusesShardsThatDoNotExist) {
     Sphere sphere;
     const JobPlan planes = plan_job(sphere.job, sphere.plate, {});
-    Feed feed(sphere.job, sphere.plate, alone());
+    Feed feed(sphere.job, sphere.plate);
     for (const std::uint32_t number : {0U, 4U}) {
         sphere.job.shard = Shard{number, 3};
         test::expect_error(ErrorKind::usage, {"there is no shard", "of 3"},
-                           [&] { static_cast<void>(divide(sphere.job, planes, feed, alone(), {})); });
+                           [&] { static_cast<void>(divide(sphere.job, planes, feed, {}, {})); });
     }
 }
 

@@ -88,7 +88,7 @@ Written process(const LayerJob& job, const Planes& planes, std::optional<Ranges>
     if (job.scan)
         info = with_exposures(info, *job.scan);
     const std::string path = folder.file("out.npz");
-    JobOutput output({.path = path, .format = &layer_format("npz", "")}, info, {0, mine.size()});
+    JobOutput output({.path = path, .format = &layer_format("npz", "")}, info);
     LayerProcessor processor(job, heights_of(planes), sliced, mine, output);
 
     std::vector<std::uint32_t> order;

@@ -6,7 +6,6 @@
 #include "fixtures/random.hpp"
 #include "parts/shapes.hpp"
 #include "pipeline/layer_totals.hpp"
-#include "thread_processes.hpp"
 
 #include <gtest/gtest.h>
 
@@ -191,15 +190,20 @@ TEST(LayerTotals, AreTheSameBitsForAnyThreadsSharesAndProcesses) {
             bounds.push_back(
                 static_cast<std::size_t>(random.integer(0, static_cast<std::int64_t>(planes.size()))));
         std::sort(bounds.begin(), bounds.end());
-        test::run_processes(processes, [&](Communicator& own) {
-            const std::size_t begin = bounds[own.process()];
-            const std::size_t count = bounds[own.process() + 1] - begin;
-            LayerTotals mine(job, std::span(plan.layers).subspan(begin, count));
-            add_all(mine, std::span(planes).subspan(begin, count), 3);
-            mine.gather(own);
-            EXPECT_EQ(mine.points(), whole.points());
-            test::expect_same(told(mine, parts), expected);
-        });
+        LayerTotals all(job, {});
+        for (std::size_t p = 0; p < processes; ++p) {
+            const std::size_t count = bounds[p + 1] - bounds[p];
+            LayerTotals some(job, std::span(plan.layers).subspan(bounds[p], count));
+            add_all(some, std::span(planes).subspan(bounds[p], count), 3);
+            Packer packer;
+            some.move_to(packer);
+            EXPECT_EQ(some.points(), 0U);
+            const std::string message = packer.take();
+            Unpacker from(message);
+            all.add(from);
+        }
+        EXPECT_EQ(all.points(), whole.points());
+        test::expect_same(told(all, parts), expected);
     }
 }
 

@@ -1,36 +1,63 @@
 #include "lamella/core/error.hpp"
-#include "lamella/pipeline/processes.hpp"
+#include "lamella/pipeline/slice_file.hpp"
+#include "lamella/write/mesh_writer.hpp"
+
+#include "parts/shapes.hpp"
+#include "temporary_folder.hpp"
+#include "thread_processes.hpp"
 
 #include <gtest/gtest.h>
 
-#include <array>
+#include <cstddef>
 #include <cstdint>
-#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace lamella::processes_cases {
 namespace {
 
-TEST(ProcessAlone, HearsItselfOnly) {
-    EXPECT_EQ(alone().process(), 0U);
-    EXPECT_EQ(alone().size(), 1U);
-    std::vector<std::uint64_t> values{3, 5};
-    alone().sum(values);
-    EXPECT_EQ(values, (std::vector<std::uint64_t>{3, 5}));
-    EXPECT_EQ(alone().gather("said"), std::vector<std::string>{"said"});
-    EXPECT_EQ(alone().exchange(std::array<std::uint64_t, 1>{7}), std::vector<std::uint64_t>{7});
-    const std::string sent = "bytes";
-    std::string received(sent.size(), '?');
-    const std::array out{std::as_bytes(std::span(sent))};
-    const std::array in{std::as_writable_bytes(std::span(received))};
-    alone().exchange(out, in);
-    EXPECT_EQ(received, sent);
+TEST(SlicingTogether, RefusesJobsThatOnlyASingleProcessCanDo) {
+    FileJob shard;
+    shard.inputs = {{.path = "part.stl"}};
+    FileJob page = shard;
+    FileJob input = shard;
+    shard.shard = Shard{1, 2};
+    page.report.path = "page.html";
+    input.inputs.front().path = "-";
+    for (const auto& [job, words] :
+         {std::pair(shard, "not those of a shard"), std::pair(page, "lamella view"),
+          std::pair(input, "standard input reaches one of the processes only")}) {
+        const Error error = test::common_failure(
+            2, [&, &job = job](Communicator& own) { static_cast<void>(slice_file(job, {}, own)); });
+        EXPECT_EQ(error.kind(), ErrorKind::usage);
+        EXPECT_NE(std::string(error.what()).find(words), std::string::npos) << error.what();
+    }
 }
 
-TEST(ProcessAlone, HasNobodyToSendToOrToHearFrom) {
-    EXPECT_THROW(alone().send(0, "message"), Error);
-    EXPECT_THROW(static_cast<void>(alone().receive(0)), Error);
+TEST(SlicingTogether, HasTheFiguresOfEachProcess) {
+    const TemporaryFolder folder;
+    const TriangleSoup body = make_torus(20, 8, 100, 100);
+    write_stl(folder.file("part.stl"), body);
+    FileJob job;
+    job.inputs = {{.path = folder.file("part.stl")}};
+    job.layering.cut = UniformLayers{.layer_height = 1};
+    for (const std::size_t count : {1U, 2U, 3U})
+        for (const FileResult& result : test::slice_by(count, job)) {
+            ASSERT_EQ(result.processes.size(), count);
+            ProcessFigures all;
+            for (const ProcessFigures& one : result.processes) {
+                all.triangles_read += one.triangles_read;
+                all.planes += one.planes;
+                all.points += one.points;
+                EXPECT_EQ(one.bytes_sent > 0, one.triangles_read > 0);
+            }
+            if (count > 1) {
+                EXPECT_EQ(all.triangles_read, body.size());
+            }
+            EXPECT_EQ(all.planes, result.report.layers);
+            EXPECT_EQ(all.points, result.report.points);
+        }
 }
 
 } // namespace

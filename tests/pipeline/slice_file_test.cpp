@@ -1,6 +1,5 @@
 #include "lamella/core/error.hpp"
 #include "lamella/mesh/transform.hpp"
-#include "lamella/pipeline/processes.hpp"
 #include "lamella/pipeline/slice_file.hpp"
 #include "lamella/write/mesh_writer.hpp"
 

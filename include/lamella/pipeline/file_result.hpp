@@ -10,7 +10,6 @@
 #include "lamella/findings/findings.hpp"
 #include "lamella/mesh/inspect.hpp"
 #include "lamella/pipeline/plate.hpp"
-#include "lamella/pipeline/processes.hpp"
 #include "lamella/pipeline/repair_policies.hpp"
 #include "lamella/polygon/layer_steps.hpp"
 #include "lamella/scan/scan.hpp"
@@ -57,6 +56,19 @@ struct PartResult {
     std::uint64_t open_chains = 0;
     std::uint64_t inverted_rings = 0; ///< see FileResult::findings
     std::uint64_t points = 0;
+};
+
+/// Figures of a process that slices a job alone or together with others, as in docs/scaling.md.
+struct ProcessFigures {
+    std::uint64_t triangles_read = 0;   ///< triangles in its part of the files
+    std::uint64_t triangles_sliced = 0; ///< triangles that its planes cut
+    std::uint64_t bytes_sent = 0;       ///< bytes of triangles sent to other processes
+    std::uint64_t planes = 0;
+    std::uint64_t points = 0;
+    double read_seconds = 0;     ///< time of three passes over its part of the files
+    double exchange_seconds = 0; ///< including waiting for other processes
+    double slice_seconds = 0;    ///< including formatting
+    double write_seconds = 0;
 };
 
 /// The result of a job.

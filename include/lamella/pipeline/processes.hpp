@@ -2,7 +2,9 @@
 
 // Communication of several processes that slice one job together, on one machine or on many.
 
-#include "lamella/core/api.hpp"
+#include "lamella/core/execution.hpp"
+#include "lamella/pipeline/file_job.hpp"
+#include "lamella/pipeline/file_result.hpp"
 
 #include <cstddef>
 #include <cstdint>
@@ -15,8 +17,8 @@ LAMELLA_API_BEGIN
 namespace lamella {
 
 /// Communication between processes, which are numbered from 0. This is an interface, so that the library does
-/// not depend on a message passing library. Except for send and receive, all processes must call the same
-/// functions in the same order. Messages may have any length. If one process ends early, the others end, too.
+/// not depend on a message passing library. All processes must call the same functions in the same order.
+/// Messages may have any length. If one process ends early, the others end, too.
 class Communicator {
   public:
     Communicator() = default;
@@ -39,26 +41,21 @@ class Communicator {
     /// message.
     virtual void exchange(std::span<const std::span<const std::byte>> outgoing,
                           std::span<const std::span<std::byte>> incoming) = 0;
-    /// Sends bytes from one process to another.
-    virtual void send(std::size_t to, std::string_view bytes) = 0;
-    [[nodiscard]] virtual std::string receive(std::size_t from) = 0;
 };
 
-/// Returns the communicator for a job of a single process.
-[[nodiscard]] Communicator& alone() noexcept;
-
-/// Figures of each process, as in docs/scaling.md.
-struct ProcessFigures {
-    std::uint64_t triangles_read = 0;   ///< triangles in its part of the files
-    std::uint64_t triangles_sliced = 0; ///< triangles that its planes cut
-    std::uint64_t bytes_sent = 0;       ///< bytes of triangles sent to other processes
-    std::uint64_t planes = 0;
-    std::uint64_t points = 0;
-    double read_seconds = 0;     ///< time of three passes over its part of the files
-    double exchange_seconds = 0; ///< including waiting for other processes
-    double slice_seconds = 0;    ///< including formatting
-    double write_seconds = 0;
-};
+/// Slices a job as slice_file does, together with other processes: all of them call this function with the
+/// same job. The file is, byte for byte, the one that a single process writes. Each process returns the
+/// result of the whole job, in which each time is the longest over all processes.
+///
+/// Each process slices a range of planes of about equal work, as if it were a shard. It reads a part of each
+/// binary STL file. If a file is not binary STL, or if the job needs whole meshes (see FileJob::max_memory),
+/// each process reads all files completely. If the format has LayerFormat::chunks, each process writes its
+/// layers to its part of the file, which must be on a shared file system. For other formats and for standard
+/// output, layers are sent to process 0, which writes them.
+///
+/// If one process throws an error, all of them throw it. With several processes, a shard, a page, and
+/// standard input (which only one process could read) are Error{usage}.
+[[nodiscard]] FileResult slice_file(const FileJob& job, const Execution& execution, Communicator& processes);
 
 } // namespace lamella
 LAMELLA_API_END

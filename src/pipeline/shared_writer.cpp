@@ -1,0 +1,187 @@
+#include "pipeline/shared_writer.hpp"
+
+#include "pipeline/packed.hpp"
+#include "system/file_chunk.hpp"
+#include "write/layer_writers.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <sstream>
+#include <string_view>
+#include <system_error>
+#include <utility>
+
+namespace lamella {
+namespace {
+
+/// Returns whether several processes can write a file: it does not exist, or is a regular one.
+bool can_be_shared(const std::string& path) {
+    std::error_code ignored;
+    const auto status = std::filesystem::status(path, ignored);
+    return path != "-" && (!std::filesystem::exists(status) || std::filesystem::is_regular_file(status));
+}
+
+std::string packed(std::span<const Layer> parts, std::span<const PointArray> hatches) {
+    Packer packer;
+    packer.put(std::uint64_t{parts.size()}).put(std::uint64_t{hatches.size()});
+    for (const Layer& layer : parts)
+        packer.put(layer.index)
+            .put(layer.z)
+            .put(layer.bottom)
+            .put(layer.top)
+            .put(std::uint64_t{layer.rings})
+            .put_all(std::span(layer.offsets))
+            .put_all(layer.points.span());
+    for (const PointArray& lines : hatches)
+        packer.put_all(lines.span());
+    return packer.take();
+}
+
+/// Returns layers without hatch lines as vectors without them.
+ScanVectors unpacked(Unpacker& unpacker) {
+    ScanVectors vectors;
+    vectors.polylines.resize(unpacker.get<std::uint64_t>());
+    vectors.hatches.resize(vectors.polylines.size());
+    const auto hatches = unpacker.get<std::uint64_t>();
+    for (Layer& layer : vectors.polylines) {
+        layer.index = unpacker.get<std::uint64_t>();
+        layer.z = unpacker.get<double>();
+        layer.bottom = unpacker.get<double>();
+        layer.top = unpacker.get<double>();
+        layer.rings = unpacker.get<std::uint64_t>();
+        layer.offsets = unpacker.get_all<std::uint64_t>();
+        layer.points = PointArray(unpacker.get_all<Point2>());
+    }
+    for (std::uint64_t i = 0; i < hatches; ++i)
+        vectors.hatches[i] = PointArray(unpacker.get_all<Point2>());
+    return vectors;
+}
+
+/// Writes the bytes at offset `position` of an existing file; errors call it `name`.
+void write_at(const std::string& path, std::uint64_t position, const ByteStore& bytes,
+              const std::string& name) {
+    FileChunk chunk(path, position, name);
+    std::string block;
+    for (std::uint64_t at = 0; at < bytes.size(); at += block.size()) {
+        block.resize(std::min<std::uint64_t>(ByteStore::block_bytes, bytes.size() - at));
+        bytes.read(at, block);
+        chunk.append(block);
+    }
+    chunk.finish();
+}
+
+} // namespace
+
+SharedWriter::SharedWriter(const OutputFiles& files, LayerFileInfo info, PlaneRange mine,
+                           Agreement& processes, std::uint64_t most_in_memory)
+    : processes_(processes), path_(files.path), most_bytes_(files.write.most_bytes),
+      strict_(files.write.strict), in_chunks_(files.format->chunks && can_be_shared(path_)),
+      waiting_(most_in_memory) {
+    const bool first = processes.process() == 0;
+    LayerWriteOptions options = files.write;
+    if (in_chunks_) {
+        if (first)
+            file_.emplace(path_);
+        working_path_ = processes.gather(file_ ? file_->share() : std::string()).front();
+        chunk_ = {mine.begin, mine.size(),
+                  [this](std::string_view bytes, const std::shared_ptr<const void>&, Completions&) {
+                      waiting_.add(bytes);
+                  }};
+        info.chunk = &chunk_;
+        // These two options apply to the whole file.
+        options.most_bytes = 0;
+        options.strict = false;
+    }
+    if (in_chunks_ || first)
+        writer_ = open_layer_writer(path_, *files.format, info, options);
+    processes.gather({}); // a file that cannot be written is reported before hours of slicing
+}
+
+Commit SharedWriter::prepare(std::span<const Layer> parts) {
+    return writer_ ? writer_->prepare(parts) : kept(packed(parts, {}));
+}
+
+Commit SharedWriter::prepare(const ScanVectors& vectors) {
+    return writer_ ? writer_->prepare(vectors) : kept(packed(vectors.polylines, vectors.hatches));
+}
+
+Commit SharedWriter::kept(std::string plane) {
+    return [this, bytes = std::move(plane)] {
+        if (batches_.empty() || batches_.back() + bytes.size() > ByteStore::block_bytes)
+            batches_.push_back(0);
+        batches_.back() += bytes.size();
+        waiting_.add(bytes);
+    };
+}
+
+void SharedWriter::finish() {
+    if (in_chunks_)
+        write_chunks();
+    else
+        write_layers_of_others();
+    // Process 0 knows the warnings, and the size of a file that it has written alone.
+    const bool first = processes_.process() == 0;
+    const std::string text = first ? fmt::format("{}", fmt::join(writer_->warnings(), "\n")) : std::string();
+    const std::vector<std::string> all =
+        processes_.gather(Packer().put(bytes_).put_all(std::span<const char>(text)).take());
+    Unpacker from(all.front());
+    bytes_ = from.get<std::uint64_t>();
+    const std::vector<char> received = from.get_all<char>();
+    std::istringstream lines(std::string(received.begin(), received.end()));
+    for (std::string warning; std::getline(lines, warning);)
+        warnings_.push_back(warning);
+    if (file_)
+        file_->commit();
+}
+
+/// Sends the layers of the other processes to process 0, which writes them in order.
+void SharedWriter::write_layers_of_others() {
+    std::vector<std::uint64_t> batches; // of each process
+    for (const std::string& message : processes_.gather(Packer().put(std::uint64_t{batches_.size()}).take()))
+        batches.push_back(Unpacker(message).get<std::uint64_t>());
+    std::uint64_t at = 0;
+    for (std::size_t from = 0; from < batches.size(); ++from)
+        for (std::uint64_t i = 0; i < batches[from]; ++i) {
+            std::string batch;
+            if (from == processes_.process()) {
+                batch.resize(batches_[i]);
+                waiting_.read(at, batch);
+                at += batch.size();
+            }
+            std::vector<std::span<const char>> outgoing(processes_.size());
+            outgoing.front() = batch;
+            const auto received = processes_.exchange<char>(outgoing);
+            for (Unpacker layers({received->data(), received->size()}); !layers.empty();)
+                writer_->prepare(unpacked(layers))();
+        }
+    if (!writer_)
+        return;
+    writer_->finish();
+    bytes_ = writer_->bytes();
+}
+
+/// Writes the range of each process at its offset, which is the sum of the sizes of the ranges before it.
+void SharedWriter::write_chunks() {
+    if (chunk_.layers > 0)
+        writer_->finish();
+    std::uint64_t position = 0;
+    const std::string mine = Packer().put(waiting_.size()).put(writer_->losses()).take();
+    const std::vector<std::string> all = processes_.gather(mine);
+    for (std::size_t p = 0; p < all.size(); ++p) {
+        Unpacker from(all[p]);
+        if (p == processes_.process())
+            position = bytes_;
+        bytes_ += from.get<std::uint64_t>();
+        if (processes_.process() == 0 && p > 0) // whose range is the first one
+            writer_->add_losses(from.get<WriteLosses>());
+    }
+    if (strict_ && processes_.process() == 0)
+        check_warnings(path_, writer_->warnings());
+    check_bytes(path_, bytes_, most_bytes_);
+    write_at(working_path_, position, waiting_, path_);
+}
+
+} // namespace lamella
