@@ -3,8 +3,8 @@
     python3 -m bench.scaling [options]      (from the root of the source tree; `make scaling` does it)
 
 All processes share one machine here, with one thread each, so with more processes than processors only CPU time counts,
-not wall time. Runs of one process give the rates; the model predicts every other run, and the report compares it with
-the measured points.
+not wall time. A process alone reads a mesh that fits into memory once, so the runs with the fewest processes that share
+the file give the rates; the model predicts every run of several processes, and the report compares it with the measured points.
 """
 
 import argparse
@@ -52,21 +52,27 @@ def figures(stats):
 
 
 class Model:
-    """Rates from runs of one process; everything else follows from counts."""
+    """Rates from runs of a few processes; everything else follows from counts."""
 
-    def __init__(self, singles):
-        self.read_rate = sum(s["triangles"] for s in singles) / sum(s["read"] for s in singles)
+    def __init__(self, runs):
+        # Of the mean process of each run: its triangles in the file and in its range, its points, its seconds.
+        shares = [{key: m[key] / m["processes"] for key in ["triangles", "sliced", "points"]} for m in runs]
+        times = [m["slice"] / m["balance"] for m in runs]
+        self.read_rate = sum(s["triangles"] for s in shares) / sum(m["read"] for m in runs)
         # Slicing: a time for each triangle and for each point, by least squares over two or more parts.
-        a = sum(s["sliced"] ** 2 for s in singles)
-        b = sum(s["sliced"] * s["points"] for s in singles)
-        c = sum(s["points"] ** 2 for s in singles)
-        u = sum(s["sliced"] * s["slice"] for s in singles)
-        v = sum(s["points"] * s["slice"] for s in singles)
+        a = sum(s["sliced"] ** 2 for s in shares)
+        b = sum(s["sliced"] * s["points"] for s in shares)
+        c = sum(s["points"] ** 2 for s in shares)
+        u = sum(s["sliced"] * time for s, time in zip(shares, times))
+        v = sum(s["points"] * time for s, time in zip(shares, times))
         det = a * c - b * b
         fits = det > 1e-6 * a * c and (u * c - v * b) / det > 0 and (v * a - u * b) / det > 0
         self.triangle, self.point = ((u * c - v * b) / det, (v * a - u * b) / det) if fits else (0, v / c)
-        self.cut = sum(s["sliced"] for s in singles) / sum(s["triangles"] for s in singles)
-        self.out_bytes = sum(s["bytes"] for s in singles) / sum(s["points"] for s in singles)
+        # The equation for `sliced` of `predict`, solved for the cut triangles.
+        borders = [(m["processes"] - 1) / (m["planes"] - 1) for m in runs]
+        cut = sum((m["sliced"] - border * m["points"]) / (1 - border) for m, border in zip(runs, borders))
+        self.cut = cut / sum(m["triangles"] for m in runs)
+        self.out_bytes = sum(m["bytes"] for m in runs) / sum(m["points"] for m in runs)
 
     def predict(self, triangles, planes, points, processes, balance=1.0):
         # Each cut triangle goes to one range, and to one more for each bound between ranges that is among its planes.
@@ -130,8 +136,10 @@ def main():
             measured.append(best)
             print(f"{best['triangles']:,} triangles, {processes} processes: {best['total']:.2f} s", flush=True)
         part.unlink()
-    model = Model([m for m in measured if m["processes"] == 1])
-    text = report(measured, model, measured[-1], wishes)
+    shared = [m for m in measured if m["processes"] > 1]
+    fewest = min(m["processes"] for m in shared)
+    model = Model([m for m in shared if m["processes"] == fewest])
+    text = report(shared, model, shared[-1], wishes)
     print(text)
     (folder / "scaling.md").write_text(text)
     (folder / "scaling.json").write_text(json.dumps(
