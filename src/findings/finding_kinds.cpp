@@ -50,10 +50,10 @@ constexpr std::array kinds{
         .kind = FindingKind::inverted_rings,
         .name = "inverted_rings",
         .origin = FindingOrigin::mesh,
-        .one = "{count} ring bounds no material {where} ({amount} mm3 lost): it runs clockwise "
+        .one = "{count} ring bounds no material {where} ({amount:.4g} mm3 lost): it runs clockwise "
                "outside of material: triangles face inwards, which `orient` corrects, or "
                "contours around it are open",
-        .many = "{count} rings bound no material {where} ({amount} mm3 lost): they run clockwise "
+        .many = "{count} rings bound no material {where} ({amount:.4g} mm3 lost): they run clockwise "
                 "outside of material: triangles face inwards, which `orient` corrects, or "
                 "contours around them are open",
         .unit = "mm3",
@@ -62,8 +62,9 @@ constexpr std::array kinds{
         .layer_amount_key = "inverted_mm2"},
     FindingDescription{.kind = FindingKind::near_faces,
                        .name = "near_faces",
-                       .many = "{amount} mm2 of level faces lie within rounding of a plane {where}: rounding "
-                               "decides whether these layers are cut above or below them; {cure}",
+                       .many =
+                           "{amount:.4g} mm2 of level faces lie within rounding of a plane {where}: rounding "
+                           "decides whether these layers are cut above or below them; {cure}",
                        .unit = "mm2",
                        .cure = cure_of_near_faces},
     FindingDescription{.kind = FindingKind::dropped_open_chains,
@@ -78,9 +79,9 @@ constexpr std::array kinds{
     FindingDescription{
         .kind = FindingKind::reversible_rings,
         .name = "reversible_rings",
-        .one = "{count} ring bounds no material {where} ({amount} mm3 lost): it runs clockwise "
+        .one = "{count} ring bounds no material {where} ({amount:.4g} mm3 lost): it runs clockwise "
                "outside of material; converting them with `fill` nonzero turns them round",
-        .many = "{count} rings bound no material {where} ({amount} mm3 lost): they run clockwise "
+        .many = "{count} rings bound no material {where} ({amount:.4g} mm3 lost): they run clockwise "
                 "outside of material; converting them with `fill` nonzero turns them round",
         .unit = "mm3",
         .count_key = "inverted_rings",
@@ -106,17 +107,17 @@ constexpr std::array kinds{
     FindingDescription{.kind = FindingKind::unreached_material,
                        .name = "unreached_material",
                        .many =
-                           "{amount} mm2 of material {on_layers}, are reached by no vector: it is too "
+                           "{amount:.4g} mm2 of material {on_layers}, are reached by no vector: it is too "
                            "narrow for contours, for lines of hatches or for lines of thin walls. More "
                            "contours or smaller values of beam_offset, border, shortest or thinnest reach "
                            "more; accepted_mm2 of the strategy says how much of a layer may be left",
                        .unit = "mm2"},
-    FindingDescription{.kind = FindingKind::overlapping_parts,
-                       .name = "overlapping_parts",
-                       .many =
-                           "parts overlap in {amount} mm2 {on_layers}, where the material is exposed more "
-                           "than once: move them apart, or unite them by `unite_parts`",
-                       .unit = "mm2"},
+    FindingDescription{
+        .kind = FindingKind::overlapping_parts,
+        .name = "overlapping_parts",
+        .many = "parts overlap in {amount:.4g} mm2 {on_layers}, where the material is exposed more "
+                "than once: move them apart, or unite them by `unite_parts`",
+        .unit = "mm2"},
 };
 
 } // namespace

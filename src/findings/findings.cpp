@@ -35,31 +35,35 @@ double shown_z(double z) {
     return std::abs(z) < nearly_0 ? 0 : z;
 }
 
-auto kind_and_file(const Finding& finding) {
-    return std::pair(finding.kind, finding.file);
+auto key_of(const Finding& finding) {
+    return std::tie(finding.kind, finding.file, finding.entries);
 }
 
-/// Adds numbers of the same kind to a total. Layers are counted by the caller, because files share planes.
-void add_numbers(Finding& total, const Finding& more) {
-    total.count += more.count;
-    total.amount += more.amount;
-    total.largest = std::max(total.largest, more.largest);
+/// Adds the numbers of a later finding. Layers are counted by the caller, because files share planes.
+void add_numbers(Finding& sum, const Finding& later) {
+    sum.first_z = sum.count == 0 ? later.first_z : std::min(sum.first_z, later.first_z);
+    if (sum.count == 0)
+        sum.place = later.place;
+    sum.count += later.count;
+    sum.amount += later.amount;
+    sum.largest = std::max(sum.largest, later.largest);
+    sum.of_layers = std::max(sum.of_layers, later.of_layers);
 }
 
-/// Returns the finding of this kind and file, which is inserted if there is none.
-Finding& find_or_insert(std::vector<Finding>& findings, FindingKind kind, std::uint32_t file) {
-    const auto at = std::lower_bound(
-        findings.begin(), findings.end(), std::pair(kind, file),
-        [](const Finding& finding, const auto& key) { return kind_and_file(finding) < key; });
-    if (at != findings.end() && kind_and_file(*at) == std::pair(kind, file))
+/// Returns the finding with the key of this one, which is inserted without numbers if there is none.
+Finding& find_or_insert(std::vector<Finding>& findings, const Finding& key) {
+    const auto at =
+        std::lower_bound(findings.begin(), findings.end(), key,
+                         [](const Finding& a, const Finding& b) { return key_of(a) < key_of(b); });
+    if (at != findings.end() && key_of(*at) == key_of(key))
         return *at;
-    return *findings.insert(at, Finding{.kind = kind, .file = file});
+    return *findings.insert(at, Finding{.kind = key.kind, .file = key.file, .entries = key.entries});
 }
 
 const Finding& found_or_none(const std::vector<Finding>& findings, FindingKind kind, std::uint32_t file) {
     static const Finding none;
     const auto at = std::find_if(findings.begin(), findings.end(), [&](const Finding& finding) {
-        return kind_and_file(finding) == std::pair(kind, file);
+        return finding.kind == kind && finding.file == file;
     });
     return at == findings.end() ? none : *at;
 }
@@ -71,7 +75,7 @@ class Sums {
         : findings_(findings), planes_(planes) {}
 
     void add(const PlaneFinding& found, std::uint32_t file) {
-        Finding& sum = find_or_insert(findings_, found.kind, file);
+        Finding& sum = find_or_insert(findings_, {.kind = found.kind, .file = file});
         const PlaneHeight& plane = planes_[found.plane];
         const bool of_volume = std::string_view(description(found.kind).unit) == "mm3";
         sum.count += found.count;
@@ -104,15 +108,20 @@ std::string Finding::text() const {
     const FindingDescription& row = description(kind);
     const char* const words = count == 1 && *row.one != '\0' ? row.one : row.many;
     const double z = shown_z(first_z);
-    return fmt::format(fmt::runtime(words), fmt::arg("count", count),
-                       fmt::arg("amount", fmt::format("{:.4g}", amount)),
-                       fmt::arg("largest", fmt::format("{:.6g}", largest)),
-                       fmt::arg("where", fmt::format("in {} of {}{}, first at z = {:.6g} mm", layers,
-                                                     counted(of_layers, "layer"), of_parts(parts), z)),
-                       fmt::arg("on_layers", fmt::format("on {}{}, the lowest at z = {:.6g} mm",
-                                                         counted(layers, "layer"), of_parts(parts), z)),
-                       fmt::arg("layers", counted(of_layers, "layer")), fmt::arg("affected", layers),
-                       fmt::arg("cure", row.cure != nullptr ? row.cure(*this) : std::string()));
+    std::string text =
+        fmt::format(fmt::runtime(words), fmt::arg("count", count), fmt::arg("amount", amount),
+                    fmt::arg("largest", largest), fmt::arg("place", place),
+                    fmt::arg("where", fmt::format("in {} of {}{}, first at z = {:.6g} mm", layers,
+                                                  counted(of_layers, "layer"), of_parts(parts), z)),
+                    fmt::arg("on_layers", fmt::format("on {}{}, the lowest at z = {:.6g} mm",
+                                                      counted(layers, "layer"), of_parts(parts), z)),
+                    fmt::arg("layers", counted(of_layers, "layer")), fmt::arg("affected", layers),
+                    fmt::arg("cure", row.cure != nullptr ? row.cure(*this) : std::string()));
+    if (!entries.empty())
+        text.insert(0, entries.front() + ": ");
+    if (entries.size() > 1)
+        text += fmt::format(" (and in {} more of its files)", entries.size() - 1);
+    return text;
 }
 
 const Finding& Findings::of(FindingKind kind) const noexcept {
@@ -138,13 +147,13 @@ std::vector<std::string> Findings::texts() const {
 }
 
 void Findings::add(Finding finding) {
-    Finding& sum = find_or_insert(total, finding.kind, Finding::all_files);
-    const bool first = sum.count == 0;
-    add_numbers(sum, finding);
-    sum.of_layers = std::max(sum.of_layers, finding.of_layers);
-    sum.layers = std::max(sum.layers, finding.layers);
-    sum.first_z = first ? finding.first_z : std::min(sum.first_z, finding.first_z);
-    find_or_insert(by_file, finding.kind, finding.file) = std::move(finding);
+    Finding& of_file = find_or_insert(by_file, finding);
+    add_numbers(of_file, finding);
+    of_file.layers += finding.layers;
+    Finding& all = find_or_insert(total, {.kind = finding.kind, .file = Finding::all_files});
+    add_numbers(all, finding);
+    all.layers = std::max(all.layers, of_file.layers);
+    std::move(finding.parts.begin(), finding.parts.end(), std::back_inserter(of_file.parts));
 }
 
 void Findings::add(const Findings& others) {

@@ -137,6 +137,57 @@ TEST(Findings, ReportTheFirstThatStrictRefuses) {
     EXPECT_EQ(found.of(FindingKind::near_faces).amount, 5);
 }
 
+TEST(Findings, CountInTheOrderOfTheFileWithThePlaceOfTheFirst) {
+    int asked = 0;
+    const auto at_byte = [&](int byte) {
+        return [&asked, byte] {
+            ++asked;
+            return "byte " + std::to_string(byte);
+        };
+    };
+    std::vector<Findings> pieces(3);
+    pieces[1].note(FindingKind::no_contours, at_byte(120));
+    pieces[1].note(FindingKind::no_contours, at_byte(130));
+    pieces[2].note(FindingKind::no_contours, at_byte(200));
+    pieces[2].note(FindingKind::nothing_left, at_byte(210));
+    EXPECT_EQ(asked, 3);
+    Findings file;
+    for (const Findings& piece : pieces)
+        file.add(piece);
+    ASSERT_EQ(file.by_file.size(), 2U);
+    EXPECT_EQ(file.of(FindingKind::no_contours, 0).count, 3U);
+    EXPECT_EQ(file.of(FindingKind::no_contours, 0).place, "byte 120");
+    EXPECT_EQ(file.of(FindingKind::no_contours).count, 3U);
+    EXPECT_EQ(file.of(FindingKind::nothing_left).place, "byte 210");
+}
+
+TEST(Findings, AddUpLaterLayersOfAFile) {
+    Findings lower;
+    lower.add(
+        {.kind = FindingKind::near_faces, .count = 1, .amount = 2, .largest = 5, .layers = 3, .first_z = 1});
+    Findings upper;
+    upper.add(
+        {.kind = FindingKind::near_faces, .count = 2, .amount = 3, .largest = 4, .layers = 1, .first_z = 9});
+    lower.add(upper);
+    const Finding sum{
+        .kind = FindingKind::near_faces, .count = 3, .amount = 5, .largest = 5, .layers = 4, .first_z = 1};
+    EXPECT_EQ(lower.by_file, std::vector{sum});
+}
+
+TEST(Findings, NameTheFilesOfAnArchive) {
+    Findings found;
+    for (const char* const entry : {"core", "skin"})
+        found.add({.kind = FindingKind::replaced_hatch_lines, .entries = {entry}, .count = 2});
+    found.add({.kind = FindingKind::outdated_hatch_lines, .entries = {"core", "skin"}, .count = 1});
+    EXPECT_EQ(
+        found.texts(),
+        Texts({"core: 2 hatch lines left out: layers are hatched anew",
+               "skin: 2 hatch lines left out: layers are hatched anew",
+               "core: 1 hatch line left out: the contours that they fill were changed (and in 1 more of "
+               "its files)"}));
+    EXPECT_EQ(found.of(FindingKind::replaced_hatch_lines).count, 4U);
+}
+
 TEST(Finding, NamesWhatClosesGapsThatRoundingLeaves) {
     const auto text_of = [](double longest) {
         FindingLog log;

@@ -44,10 +44,11 @@ enum class FindingOrigin : std::uint8_t {
 
 struct Finding;
 
-/// A row of the table of findings. Texts are templates with these fields: `{count}`, `{amount}`, `{largest}`
-/// (numbers of the finding), `{where}` ("in 3 of 20 layers, first at z = 0.25 mm"), `{on_layers}` ("on 3
-/// layers, the lowest at z = 0.25 mm"), `{layers}` ("20 layers": all of them), `{affected}` (the number of
-/// layers with the finding), and `{cure}`, the text of the function `cure`.
+/// A row of the table of findings. Texts are templates of {fmt} with these fields: `{count}`, `{amount}`,
+/// `{largest}` (numbers of the finding), `{place}` (see Finding), `{where}` ("in 3 of 20 layers, first at z =
+/// 0.25 mm"), `{on_layers}` ("on 3 layers, the lowest at z = 0.25 mm"), `{layers}` ("20 layers": all of
+/// them),
+/// `{affected}` (the number of layers with the finding), and `{cure}`, the text of the function `cure`.
 struct FindingDescription {
     FindingKind kind = {};
     const char* name = ""; ///< for programs, such as "open_chains"
@@ -95,7 +96,8 @@ struct PlaneFinding {
 /// The finding of one kind in one file, or in all files, over all layers.
 struct Finding {
     FindingKind kind = {};
-    std::uint32_t file = 0; ///< index of the input, or all_files
+    std::uint32_t file = 0;                ///< index of the input, or all_files
+    std::vector<std::string> entries = {}; ///< if the file is an archive: its files with the finding
     std::uint64_t count = 0;
     double amount = 0;                   ///< in the unit of the kind
     double largest = 0;                  ///< mm
@@ -103,12 +105,14 @@ struct Finding {
     std::uint64_t of_layers = 0;         ///< number of all layers
     double first_z = 0;                  ///< height of the lowest of these layers, mm
     std::vector<std::string> parts = {}; ///< labels of the parts with the finding; empty if all parts have it
+    /// Text about the first one: its location, such as "byte 120", and what was found there.
+    std::string place = {};
 
     /// The value of `file` in findings that belong to no single file.
     static constexpr std::uint32_t all_files = ~std::uint32_t{0};
 
     /// Returns one line with the finding, its position and a remedy. Options are named as fields between
-    /// backquotes, such as `orient`.
+    /// backquotes, such as `orient`. The first of the `entries`, if any, is put in front of it.
     [[nodiscard]] std::string text() const;
 
     friend bool operator==(const Finding&, const Finding&) = default;
@@ -120,9 +124,9 @@ struct PlaneHeight {
     double thickness = 0;
 };
 
-/// Findings of a job.
+/// Findings of a job, or of a step of it, such as reading a file.
 struct Findings {
-    std::vector<Finding> by_file; ///< by ascending kind, then file
+    std::vector<Finding> by_file; ///< by ascending kind, then file, then entries
     std::vector<Finding> total;   ///< over all files, by ascending kind
 
     [[nodiscard]] bool empty() const noexcept { return by_file.empty(); }
@@ -134,10 +138,18 @@ struct Findings {
     [[nodiscard]] const Finding* first_warning() const noexcept;
     /// Returns a line for each finding, without the names of files.
     [[nodiscard]] std::vector<std::string> texts() const;
-    /// Adds a finding, also to the total of its kind. It must be the only one of its kind and file.
+    /// Adds a finding, also to the total of its kind. If there is one of its kind, file and entries, the
+    /// numbers are added up, and this one must be about later layers, or a later range of the file.
     void add(Finding finding);
-    /// Adds the findings of other files or kinds.
+    /// Adds the findings of other files, or of later layers or ranges.
     void add(const Findings& others);
+    /// Counts one finding of file 0. `place()`, the text Finding::place, is called only for the first of its
+    /// kind.
+    template <class Place>
+    void note(FindingKind kind, const Place& place) {
+        const bool first = of(kind, 0).count == 0;
+        add({.kind = kind, .count = 1, .place = first ? std::string(place()) : std::string()});
+    }
 };
 
 /// Collects findings on planes, from any threads.
