@@ -19,10 +19,12 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <initializer_list>
 #include <memory>
 #include <optional>
 #include <string>
 #include <utility>
+#include <variant>
 
 namespace lamella::app {
 namespace {
@@ -44,23 +46,24 @@ struct VerifyArguments {
     RunOptions run;
 };
 
-Json heights_json(const std::optional<CoveredHeights>& heights) {
+Json heights_json(const std::optional<CoveredHeights>& heights, const Findings& findings) {
     if (!heights)
         return {};
     return {{"layers", {heights->bottom, heights->top}},
             {"mesh", {heights->mesh_bottom, heights->mesh_top}},
             {"layers_above", heights->layers_above},
             {"layers_below", heights->layers_below},
-            {"gaps", heights->gaps},
-            {"gaps_mm", heights->gaps_mm}};
+            {"gaps", findings.of(FindingKind::layer_gaps).count},
+            {"gaps_mm", findings.of(FindingKind::layer_gaps).amount}};
 }
 
-std::string heights_text(const std::optional<CoveredHeights>& heights) {
+std::string heights_text(const std::optional<CoveredHeights>& heights, const Findings& findings) {
     if (!heights)
         return {};
     const double whole = heights->mesh_top - heights->mesh_bottom;
     const double covered = std::min(heights->top, heights->mesh_top) -
-                           std::max(heights->bottom, heights->mesh_bottom) - heights->gaps_mm;
+                           std::max(heights->bottom, heights->mesh_bottom) -
+                           findings.of(FindingKind::layer_gaps).amount;
     std::string text =
         fmt::format("  layers from z = {} to {} mm, of a mesh from {} to {} mm: {:.4g} % of its height",
                     height(heights->bottom), height(heights->top), height(heights->mesh_bottom),
@@ -73,14 +76,30 @@ std::string heights_text(const std::optional<CoveredHeights>& heights) {
     return text + "\n";
 }
 
+/// Adds the numbers of the findings of a check, and their texts.
+void add_findings(Json& object, const Findings& findings, FindingOrigin check) {
+    for (const FindingNumber& number : findings.numbers(check))
+        std::visit([&](auto value) { object[number.key] = value; }, number.value);
+    object["findings"] = findings.texts();
+}
+
+/// Returns an object whose keys have this order. The numbers of further kinds of findings follow.
+Json with_keys(std::initializer_list<const char*> keys) {
+    Json object;
+    for (const char* key : keys)
+        object[key] = nullptr;
+    return object;
+}
+
 Json verification_json(const Verification& found) {
-    Json object{{"layers", found.layers},           {"contours", found.contours},
-                {"open_chains", found.open_chains}, {"crossings", found.crossings},
-                {"misoriented", found.misoriented}, {"overlapping", found.overlapping},
-                {"volume_mm3", found.volume_mm3},   {"max_area_error_mm2", nullptr},
-                {"displaced", found.displaced},     {"height_overlaps", found.height_overlaps},
-                {"hatches", found.hatches},         {"heights", heights_json(found.heights)},
-                {"findings", found.findings},       {"hint", nullptr}};
+    Json object = with_keys({"layers", "contours", "open_chains", "crossings", "misoriented", "overlapping",
+                             "volume_mm3", "max_area_error_mm2", "displaced", "height_overlaps", "hatches",
+                             "heights", "findings", "hint"});
+    object["layers"] = found.layers;
+    object["contours"] = found.contours;
+    object["volume_mm3"] = found.volume_mm3;
+    object["heights"] = heights_json(found.heights, found.findings);
+    add_findings(object, found.findings, FindingOrigin::layers);
     if (found.max_area_error_mm2)
         object["max_area_error_mm2"] = *found.max_area_error_mm2;
     if (!found.open_layers.empty()) {
@@ -93,9 +112,13 @@ Json verification_json(const Verification& found) {
     return object;
 }
 
+bool areas_agree(const Verification& found) {
+    return found.findings.count(FindingKind::other_areas) == 0;
+}
+
 std::string verification_text(const std::string& mesh, const Verification& found, const std::string& hint) {
     std::string text;
-    for (const std::string& finding : found.findings)
+    for (const std::string& finding : found.findings.texts())
         text += fmt::format("  {}\n", with_options(finding));
     text += fmt::format("  {}, {}, {}, volume {} mm3\n", counted(found.layers, "layer"),
                         counted(found.contours, "contour"), counted(found.points, "point"),
@@ -103,10 +126,10 @@ std::string verification_text(const std::string& mesh, const Verification& found
     if (found.max_area_error_mm2)
         text +=
             fmt::format("  areas differ from the sections of {} by at most {} mm2{}\n", one_line(mesh),
-                        brief(*found.max_area_error_mm2), found.areas_agree ? ", as rounding allows" : "");
+                        brief(*found.max_area_error_mm2), areas_agree(found) ? ", as rounding allows" : "");
     if (!hint.empty())
         text += fmt::format("  {}\n", hint);
-    text += heights_text(found.heights);
+    text += heights_text(found.heights, found.findings);
     if (found.ok())
         text += fmt::format(
             "  every contour is closed, none cross, holes and outer contours run the right way{}\n",
@@ -115,40 +138,36 @@ std::string verification_text(const std::string& mesh, const Verification& found
 }
 
 Json vectors_json(bool strategy, const VectorVerification& found) {
-    return {{"layers", found.layers},
-            {"contour_vectors", found.contour_vectors},
-            {"hatch_vectors", found.hatch_vectors},
-            {"open_chains", found.open_chains},
-            {"crossings", found.crossings},
-            {"misoriented", found.misoriented},
-            {"outside", found.outside},
-            {"too_short", found.too_short},
-            {"inverted_rings", found.inverted_rings},
-            {"inverted_mm3", found.inverted_mm3},
-            {"height_overlaps", found.height_overlaps},
-            {"unbounded", found.unbounded},
-            {"unreached_layers", found.unreached_layers},
-            {"unreached_mm2", strategy ? Json(found.unreached_mm2) : Json()},
-            {"heights", heights_json(found.heights)},
-            {"findings", found.findings},
-            {"hint", nullptr}};
+    Json object =
+        with_keys({"layers", "contour_vectors", "hatch_vectors", "open_chains", "crossings", "misoriented",
+                   "outside", "too_short", "inverted_rings", "inverted_mm3", "height_overlaps", "unbounded",
+                   "unreached_layers", "unreached_mm2", "heights", "findings", "hint"});
+    object["layers"] = found.layers;
+    object["contour_vectors"] = found.contour_vectors;
+    object["hatch_vectors"] = found.hatch_vectors;
+    object["heights"] = heights_json(found.heights, found.findings);
+    add_findings(object, found.findings, FindingOrigin::vectors);
+    if (!strategy)
+        object["unreached_mm2"] = nullptr;
+    return object;
 }
 
 std::string vectors_text(const std::string& mesh, bool strategy, const VectorVerification& found,
                          const std::string& hint) {
     std::string text;
-    for (const std::string& finding : found.findings)
+    for (const std::string& finding : found.findings.texts())
         text += fmt::format("  {}\n", finding);
     text += fmt::format("  {}, {} along contours and {} of hatches\n", counted(found.layers, "layer"),
                         counted(found.contour_vectors, "vector"), grouped(found.hatch_vectors));
-    if (strategy && found.unreached_mm2 >= 5e-4)
-        text += fmt::format("  {:.4g} mm2 of the material are reached by no vector\n", found.unreached_mm2);
+    if (const double unreached = found.findings.of(FindingKind::unreached_layers).amount; unreached >= 5e-4)
+        text += fmt::format("  {:.4g} mm2 of the material are reached by no vector\n", unreached);
     if (!hint.empty())
         text += fmt::format("  {}\n", hint);
-    text += heights_text(found.heights);
+    text += heights_text(found.heights, found.findings);
     const std::uint64_t all = found.contour_vectors + found.hatch_vectors;
-    if (found.ok() && found.unbounded < all)
-        text += fmt::format("  all {}vectors lie within {}{}\n", found.unbounded > 0 ? "other " : "",
+    const std::uint64_t unbounded = found.findings.count(FindingKind::unbounded_vectors);
+    if (found.ok() && unbounded < all)
+        text += fmt::format("  all {}vectors lie within {}{}\n", unbounded > 0 ? "other " : "",
                             mesh.empty() ? "the outermost contours of their part" : one_line(mesh),
                             strategy ? ", as far from its edges as the strategy says"
                                      : "; --scan or --strategy FILE would check their distance from its "
@@ -250,14 +269,17 @@ int run_verify(const VerifyArguments& arguments, const Context& context) {
         const Verification found = verify_file(plain, options, execution);
         ok = ok && found.ok();
         object.update(verification_json(found));
+        const auto disagree = [](const Verification& one) {
+            return !areas_agree(one) || one.findings.count(FindingKind::displaced_layers) > 0;
+        };
         std::string hint;
-        if (cut_is_assumed && (!found.areas_agree || found.displaced > 0))
+        if (cut_is_assumed && disagree(found))
             hint = cut_hint(plain, [&](const LayerFile& moved, PlaneRule moved_rule) {
                 options.rule = moved_rule;
                 const Verification again = verify_file(moved, options, execution);
-                return again.areas_agree && again.displaced == 0;
+                return !disagree(again);
             });
-        else if (!found.areas_agree)
+        else if (!areas_agree(found))
             hint = "layers that were rounded before may be off by more: say by how much with --tolerance MM";
         if (!hint.empty())
             object["hint"] = hint;
@@ -270,7 +292,9 @@ int run_verify(const VerifyArguments& arguments, const Context& context) {
         ok = ok && found.ok();
         object["vectors"] = vectors_json(strategy.has_value(), found);
         const auto disagree = [](const VectorVerification& one) {
-            return one.outside > 0 || one.unreached_layers > 0;
+            return one.findings.count(FindingKind::outside_vectors) > 0 ||
+                   one.findings.count(FindingKind::misplaced_vectors) > 0 ||
+                   one.findings.count(FindingKind::unreached_layers) > 0;
         };
         std::string hint;
         if (cut_is_assumed && disagree(found))

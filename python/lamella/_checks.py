@@ -34,6 +34,7 @@ class Verification:
     volume: float  #: mm^3, the sum of area times thickness
     max_area_error: Optional[float]  #: mm^2, the largest difference from the section of the mesh, if one was given
     areas_agree: bool  #: the areas of all layers agree with those of the sections within rounding
+    hatches: int  #: hatch lines, which are not checked
     displaced: int  #: layers whose areas agree but whose centroids differ from those of the mesh's sections
     height_overlaps: int  #: layers that begin within the height of another one
     gaps: int  #: between layers, where the mesh has material; 0 without a mesh

@@ -337,6 +337,14 @@ void set_reference(VerifyOptions& options, const SourcePlate& plate, const Execu
         options.plate = plate.mended;
 }
 
+/// Adds the numbers of the findings of a check, and their texts.
+void add_findings(py::dict& fields, const Findings& findings, FindingOrigin check) {
+    for (const FindingNumber& number : findings.numbers(check))
+        fields[number.key] = number.value;
+    fields["gaps"] = findings.count(FindingKind::layer_gaps);
+    fields["findings"] = findings.texts();
+}
+
 py::dict verified(const Stack& stack, const PlatePointer& plate, const std::string& at, double snap_mm,
                   double tolerance, std::optional<double> close_gaps_mm, const std::string& fill,
                   unsigned threads, const py::object& progress) {
@@ -364,17 +372,10 @@ py::dict verified(const Stack& stack, const PlatePointer& plate, const std::stri
     fields["layers"] = found.layers;
     fields["contours"] = found.contours;
     fields["points"] = found.points;
-    fields["open_chains"] = found.open_chains;
-    fields["crossings"] = found.crossings;
-    fields["misoriented"] = found.misoriented;
-    fields["overlapping"] = found.overlapping;
     fields["volume"] = found.volume_mm3;
     fields["max_area_error"] = found.max_area_error_mm2;
-    fields["areas_agree"] = found.areas_agree;
-    fields["displaced"] = found.displaced;
-    fields["height_overlaps"] = found.height_overlaps;
-    fields["gaps"] = found.heights ? found.heights->gaps : 0;
-    fields["findings"] = found.findings;
+    fields["areas_agree"] = found.findings.count(FindingKind::other_areas) == 0;
+    add_findings(fields, found.findings, FindingOrigin::layers);
     return fields;
 }
 
@@ -410,19 +411,8 @@ vectors_verified(const py::object& source, const PlatePointer& plate,
     fields["layers"] = found.layers;
     fields["contour_vectors"] = found.contour_vectors;
     fields["hatch_vectors"] = found.hatch_vectors;
-    fields["open_chains"] = found.open_chains;
-    fields["crossings"] = found.crossings;
-    fields["misoriented"] = found.misoriented;
-    fields["outside"] = found.outside;
-    fields["too_short"] = found.too_short;
-    fields["unreached_layers"] = found.unreached_layers;
-    fields["unreached_mm2"] = found.unreached_mm2;
-    fields["inverted_rings"] = found.inverted_rings;
-    fields["inverted_volume"] = found.inverted_mm3;
-    fields["height_overlaps"] = found.height_overlaps;
-    fields["gaps"] = found.heights ? found.heights->gaps : 0;
-    fields["unbounded"] = found.unbounded;
-    fields["findings"] = found.findings;
+    add_findings(fields, found.findings, FindingOrigin::vectors);
+    fields["inverted_volume"] = fields.attr("pop")("inverted_mm3");
     return {fields, message_texts(warnings)};
 }
 

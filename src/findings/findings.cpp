@@ -45,6 +45,7 @@ void add_numbers(Finding& sum, const Finding& later) {
     if (sum.count == 0)
         sum.place = later.place;
     sum.count += later.count;
+    sum.or_more = sum.or_more || later.or_more;
     sum.amount += later.amount;
     sum.largest = std::max(sum.largest, later.largest);
     sum.of_layers = std::max(sum.of_layers, later.of_layers);
@@ -111,6 +112,7 @@ std::string Finding::text() const {
     std::string text =
         fmt::format(fmt::runtime(words), fmt::arg("count", count), fmt::arg("amount", amount),
                     fmt::arg("largest", largest), fmt::arg("place", place),
+                    fmt::arg("or_more", or_more ? "or more (rings of such a layer were not checked), " : ""),
                     fmt::arg("where", fmt::format("in {} of {}{}, first at z = {:.6g} mm", layers,
                                                   counted(of_layers, "layer"), of_parts(parts), z)),
                     fmt::arg("on_layers", fmt::format("on {}{}, the lowest at z = {:.6g} mm",
@@ -132,11 +134,32 @@ const Finding& Findings::of(FindingKind kind, std::uint32_t file) const noexcept
     return found_or_none(by_file, kind, file);
 }
 
-const Finding* Findings::first_warning() const noexcept {
-    const auto found = std::find_if(by_file.begin(), by_file.end(), [](const Finding& finding) {
-        return description(finding.kind).severity == Severity::warning;
+const Finding* Findings::first(Severity least) const noexcept {
+    const auto found = std::find_if(by_file.begin(), by_file.end(), [&](const Finding& finding) {
+        return description(finding.kind).severity >= least;
     });
     return found == by_file.end() ? nullptr : &*found;
+}
+
+std::vector<FindingNumber> Findings::numbers(FindingOrigin check) const {
+    std::vector<FindingNumber> numbers;
+    const auto add = [&](const char* key, auto value) {
+        if (*key == '\0')
+            return;
+        const auto same = std::find_if(numbers.begin(), numbers.end(), [&](const FindingNumber& number) {
+            return std::string_view(number.key) == key;
+        });
+        if (same == numbers.end())
+            numbers.push_back({key, value});
+        else
+            std::get<decltype(value)>(same->value) += value;
+    };
+    for (const FindingDescription& row : finding_kinds())
+        if (row.origin == check || row.origin == FindingOrigin::layers_or_vectors) {
+            add(row.count_key, of(row.kind).count);
+            add(row.amount_key, of(row.kind).amount);
+        }
+    return numbers;
 }
 
 std::vector<std::string> Findings::texts() const {

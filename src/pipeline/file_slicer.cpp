@@ -205,7 +205,7 @@ void add_missing_contours(FileResult& result) {
 void refuse_defects(const FileJob& job, const FileResult& result) {
     if (!job.strict)
         return;
-    if (const Finding* found = result.findings.first_warning(); found != nullptr)
+    if (const Finding* found = result.findings.first(Severity::warning); found != nullptr)
         throw Error(ErrorKind::defect,
                     fmt::format("{}: {}",
                                 found->file == Finding::all_files ? name_of(job.inputs)

@@ -1,7 +1,6 @@
 #include "pipeline/layer_heights.hpp"
 
 #include "contour/same_height.hpp"
-#include "core/counted.hpp"
 #include "pipeline/layer_check.hpp"
 
 #include <fmt/format.h>
@@ -32,31 +31,25 @@ double moved_heights(const Layer& below, const Layer& above, const Rounding& rou
 
 } // namespace
 
-std::uint64_t overlapping_heights(std::span<const Layer> layers, const Rounding& rounding,
-                                  std::vector<std::string>& findings) {
-    std::uint64_t overlaps = 0;
-    std::string first;
+void add_height_overlaps(Findings& found, std::span<const Layer> layers, const Rounding& rounding) {
     const Layer* below = nullptr;
     for (const Layer* const above : from_the_lowest(layers)) {
         const double moved = below == nullptr ? 0 : moved_heights(*below, *above, rounding);
         const bool same_height = below != nullptr && above->bottom - below->bottom <= moved &&
                                  std::abs(above->top - below->top) <= moved;
-        if (below != nullptr && !same_height && below->top - above->bottom > moved && overlaps++ == 0)
-            first = fmt::format("{} begins at z = {:.6g} mm, {} ends at {:.6g} mm", where(*above),
-                                above->bottom, where(*below), below->top);
+        if (below != nullptr && !same_height && below->top - above->bottom > moved)
+            found.note(FindingKind::height_overlaps, [&] {
+                return fmt::format("{} begins at z = {:.6g} mm, {} ends at {:.6g} mm", where(*above),
+                                   above->bottom, where(*below), below->top);
+            });
         if (below == nullptr || above->top > below->top)
             below = above;
     }
-    if (overlaps > 0)
-        findings.push_back(counted(overlaps, "layer begins within the height of another one: ",
-                                   "layers begin within the height of another one, the first: ") +
-                           first);
-    return overlaps;
 }
 
 std::optional<CoveredHeights> covered_heights(std::span<const Layer> layers, const Mesh& mesh,
                                               const Rounding& rounding, const Execution& execution,
-                                              std::vector<std::string>& findings) {
+                                              Findings& found) {
     const Box3 box = bounding_box(mesh, execution);
     if (layers.empty() || box.empty())
         return std::nullopt;
@@ -72,34 +65,25 @@ std::optional<CoveredHeights> covered_heights(std::span<const Layer> layers, con
         if (above->top > below->top)
             below = above;
     }
-    CoveredHeights found{.bottom = ascending.front()->bottom,
-                         .top = below->top,
-                         .mesh_bottom = box.min.z,
-                         .mesh_top = box.max.z};
+    CoveredHeights heights{.bottom = ascending.front()->bottom,
+                           .top = below->top,
+                           .mesh_bottom = box.min.z,
+                           .mesh_top = box.max.z};
     for (const Layer& layer : layers) {
         constexpr double nothing = 1e-6; // rounding of heights
-        found.layers_above += layer.bottom > found.mesh_top - nothing ? 1 : 0;
-        found.layers_below += layer.top < found.mesh_bottom + nothing ? 1 : 0;
+        heights.layers_above += layer.bottom > heights.mesh_top - nothing ? 1 : 0;
+        heights.layers_below += layer.top < heights.mesh_bottom + nothing ? 1 : 0;
     }
     if (middles.layers.empty())
-        return found;
+        return heights;
     const std::vector<double> areas = section_areas(mesh, middles, execution);
-    const PlannedLayer* first = nullptr;
-    for (std::size_t i = 0; i < areas.size(); ++i) {
-        if (areas[i] == 0)
-            continue;
-        const PlannedLayer& gap = middles.layers[i];
-        if (found.gaps++ == 0)
-            first = &gap;
-        found.gaps_mm += gap.top - gap.bottom;
-    }
-    if (first != nullptr)
-        findings.push_back(
-            fmt::format("{} between layers, where the mesh has material, {:.6g} mm in all: the "
-                        "first from z = {:.6g} to {:.6g} mm",
-                        found.gaps == 1 ? "a gap" : fmt::format("{} gaps", found.gaps), found.gaps_mm,
-                        first->bottom, first->top));
-    return found;
+    for (std::size_t i = 0; i < areas.size(); ++i)
+        if (const PlannedLayer& gap = middles.layers[i]; areas[i] != 0)
+            found.add({.kind = FindingKind::layer_gaps,
+                       .count = 1,
+                       .amount = gap.top - gap.bottom,
+                       .place = fmt::format("from z = {:.6g} to {:.6g} mm", gap.bottom, gap.top)});
+    return heights;
 }
 
 } // namespace lamella

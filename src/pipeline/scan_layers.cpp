@@ -75,7 +75,7 @@ FileResult scan_layers(const std::string& path, const LayerFormat& format, const
     source.run(Stage::write, process, execution);
     processor.set_times(result.seconds);
     processor.totals().store_in(result);
-    if (const Finding* found = result.findings.first_warning(); options.strict && found != nullptr)
+    if (const Finding* found = result.findings.first(Severity::warning); options.strict && found != nullptr)
         throw Error(ErrorKind::defect,
                     fmt::format("{}: {}", source.path.empty() ? path : source.path, found->text()));
     output.finish_file(result);

@@ -2,6 +2,7 @@
 
 #include "lamella/polygon/fill.hpp"
 
+#include "pipeline/layer_check.hpp"
 #include "scan/hatch.hpp"
 #include "scan/narrow_bodies.hpp"
 #include "scan/support.hpp"
@@ -12,8 +13,7 @@
 
 namespace lamella {
 void check_reach(const PlaneGroup& group, const MaterialBounds& bounds, const ScanStrategy& strategy,
-                 const Rounding& rounding, double moved_edges, const LayerLimits& limits,
-                 PlaneFindings& found) {
+                 const Rounding& rounding, double moved_edges, const LayerLimits& limits, Findings& found) {
     const bool support = group.front().exposure.region == ScanRegion::support;
     const FillDepths depths(support ? filling_supports(strategy.support, strategy.seed) : strategy);
     double largest = 0;
@@ -48,10 +48,9 @@ void check_reach(const PlaneGroup& group, const MaterialBounds& bounds, const Sc
             at = material.points.empty() ? Point2{} : material.points[0];
         }
     }
-    if (least > strategy.accepted_mm2) {
-        found.unreached.add(plane, at);
-        found.unreached_mm2 += least;
-    }
+    if (least > strategy.accepted_mm2)
+        found.add(
+            {.kind = FindingKind::unreached_layers, .count = 1, .amount = least, .place = where(plane, at)});
 }
 
 } // namespace lamella

@@ -6,7 +6,6 @@
 
 #include "contour/area_moments.hpp"
 #include "contour/same_height.hpp"
-#include "core/counted.hpp"
 #include "core/executor.hpp"
 #include "pipeline/layer_check.hpp"
 #include "pipeline/layer_heights.hpp"
@@ -25,7 +24,8 @@ namespace lamella {
 
 namespace {
 
-std::string gaps_text(std::span<const Verification::OpenLayer> layers) {
+/// Returns the sum of the gaps, with the place of the longest.
+Finding contour_gaps(std::span<const Verification::OpenLayer> layers) {
     OpenGaps all;
     const Verification::OpenLayer* worst = &layers.front();
     for (const Verification::OpenLayer& layer : layers) {
@@ -33,11 +33,13 @@ std::string gaps_text(std::span<const Verification::OpenLayer> layers) {
         if (layer.gaps.longest_mm > worst->gaps.longest_mm)
             worst = &layer;
     }
-    return fmt::format(
-        "{:.4g} mm are missing between their ends, in {}; the longest gap, of {:.4g} mm, is in "
-        "layer {} (z {:.7g} mm) from ({:.7g}, {:.7g}) to ({:.7g}, {:.7g})",
-        all.total_mm, counted(layers.size(), "layer"), worst->gaps.longest_mm, worst->index, worst->z,
-        worst->gaps.from.x, worst->gaps.from.y, worst->gaps.to.x, worst->gaps.to.y);
+    return {.kind = FindingKind::contour_gaps,
+            .count = layers.size(),
+            .amount = all.total_mm,
+            .largest = worst->gaps.longest_mm,
+            .place = fmt::format("layer {} (z {:.7g} mm) from ({:.7g}, {:.7g}) to ({:.7g}, {:.7g})",
+                                 worst->index, worst->z, worst->gaps.from.x, worst->gaps.from.y,
+                                 worst->gaps.to.x, worst->gaps.to.y)};
 }
 
 /// Returns the largest possible difference between the area of a layer and that of the section of the mesh,
@@ -128,13 +130,19 @@ void compare_areas(std::span<const Layer> layers, std::span<const CheckedLayer> 
             }
         }
     }
-    double largest_error = 0;
+    const auto centre = [&](const AreaMoments& section) -> std::string {
+        if (section.area_mm2 == 0)
+            return "nowhere"; // the areas of bodies cancel
+        const auto to_nanometres = [](double mm) {
+            return std::round(mm * 1e6) / 1e6 + 0.0;
+        };
+        return fmt::format("({:.7g}, {:.7g})", to_nanometres(origin.x + section.x_mm3 / section.area_mm2),
+                           to_nanometres(origin.y + section.y_mm3 / section.area_mm2));
+    };
     std::uint64_t compared = 0;
-    std::uint64_t differing = 0;
-    std::size_t first = 0;
-    std::size_t first_displaced = 0;
+    double largest_error = 0;
     for (std::size_t i = 0; i < layers.size(); ++i) {
-        if (checks[i].found.open_chains.total > 0)
+        if (checks[i].found.count(FindingKind::open_contours) > 0)
             continue; // the area is unknown
         ++compared;
         const AreaMoments& moments = checks[i].own.moments;
@@ -154,46 +162,24 @@ void compare_areas(std::span<const Layer> layers, std::span<const CheckedLayer> 
                 undecided_mm2, std::abs(sections[i][k].area_mm2 - sections[i][k % of_one_limit].area_mm2));
         largest_error = std::max(largest_error, std::abs(moments.area_mm2 - sections[i].front().area_mm2));
         const double tolerance = checks[i].own.tolerance;
-        if (beyond(&AreaMoments::area_mm2) > tolerance) {
-            if (differing++ == 0)
-                first = i;
-        } else if (std::max(beyond(&AreaMoments::x_mm3), beyond(&AreaMoments::y_mm3)) >
-                   (tolerance + undecided_mm2) * checks[i].own.reach) {
-            if (result.displaced++ == 0)
-                first_displaced = i;
-        }
+        const double area = checks[i].measure.area_mm2;
+        const double area_of_mesh = sections[i].front().area_mm2;
+        if (beyond(&AreaMoments::area_mm2) > tolerance)
+            result.findings.note(FindingKind::other_areas, [&] {
+                return fmt::format("{}: {:.7g} mm2 instead of {:.7g} mm2, {:.6g} mm2 off", where(layers[i]),
+                                   area, area_of_mesh, std::abs(area - area_of_mesh));
+            });
+        else if (std::max(beyond(&AreaMoments::x_mm3), beyond(&AreaMoments::y_mm3)) >
+                 (tolerance + undecided_mm2) * checks[i].own.reach)
+            result.findings.note(FindingKind::displaced_layers, [&] {
+                return fmt::format("{}: its centre is at {} mm instead of {}", where(layers[i]),
+                                   centre(moments), centre(sections[i].front()));
+            });
     }
     if (compared > 0)
         result.max_area_error_mm2 = largest_error;
     if (compared < layers.size())
-        result.findings.push_back(counted(layers.size() - compared,
-                                          "layer with open contours was not compared with the mesh",
-                                          "layers with open contours were not compared with the mesh"));
-    if (differing > 0) {
-        result.areas_agree = false;
-        result.findings.push_back(
-            fmt::format("{} of another area than the mesh's section, the first "
-                        "is {}: {:.7g} mm2 instead of {:.7g} mm2, {:.6g} mm2 off",
-                        counted(differing, "layer is", "layers are"), where(layers[first]),
-                        checks[first].measure.area_mm2, sections[first].front().area_mm2,
-                        std::abs(checks[first].measure.area_mm2 - sections[first].front().area_mm2)));
-    }
-    if (result.displaced > 0) {
-        const auto centre = [&](const AreaMoments& section) -> std::string {
-            if (section.area_mm2 == 0)
-                return "nowhere"; // the areas of bodies cancel
-            const auto to_nanometres = [](double mm) {
-                return std::round(mm * 1e6) / 1e6 + 0.0;
-            };
-            return fmt::format("({:.7g}, {:.7g})", to_nanometres(origin.x + section.x_mm3 / section.area_mm2),
-                               to_nanometres(origin.y + section.y_mm3 / section.area_mm2));
-        };
-        result.findings.push_back(fmt::format(
-            "{} elsewhere than the mesh's section, the first is {}: its centre is at {} mm "
-            "instead of {}",
-            counted(result.displaced, "layer lies", "layers lie"), where(layers[first_displaced]),
-            centre(checks[first_displaced].own.moments), centre(sections[first_displaced].front())));
-    }
+        result.findings.add({.kind = FindingKind::uncompared_layers, .count = layers.size() - compared});
 }
 
 } // namespace
@@ -255,42 +241,25 @@ Verification verify_planes(std::span<const Layer> layers, const LayerAt& layer_a
     progress.finish();
 
     Verification result;
-    ContourFindings found;
     result.layers = layers.size();
-    result.hatches = options.hatch_lines;
     for (std::size_t i = 0; i < layers.size(); ++i) {
         const CheckedLayer& check = checks[i];
-        found.add(check.found);
+        result.findings.add(check.found);
         result.contours += check.measure.contours;
         result.points += check.measure.points;
         result.volume_mm3 += check.measure.area_mm2 * layers[i].thickness();
         if (check.open_gaps.count > 0)
             result.open_layers.push_back({layers[i].index, layers[i].z, check.open_gaps});
     }
-    result.open_chains = found.open_chains.total;
-    result.crossings = found.crossings.total;
-    result.misoriented = found.misoriented.total + found.tangled.total;
-    result.overlapping = found.overlapping.total;
-    append_finding(found.open_chains, open_chains_words, result.findings);
     if (!result.open_layers.empty())
-        result.findings.push_back(gaps_text(result.open_layers));
-    append_finding(found.crossings, crossings_words, result.findings);
-    append_finding(found.misoriented, misoriented_words, result.findings);
-    append_finding(found.tangled, tangled_words, result.findings);
-    append_finding(found.overlapping,
-                   {"ring lies within material: bodies that overlap, or holes that run the wrong way round;",
-                    "rings lie within material: bodies that overlap, or holes that run the wrong way round;"},
-                   result.findings);
-    result.height_overlaps = overlapping_heights(layers, options.granted(), result.findings);
-    if (result.hatches > 0)
-        result.findings.push_back(
-            counted(result.hatches, "hatch line was not checked: no contour bounds the area that it fills",
-                    "hatch lines were not checked: no contour bounds the area that they fill"));
+        result.findings.add(contour_gaps(result.open_layers));
+    add_height_overlaps(result.findings, layers, options.granted());
+    if (options.hatch_lines > 0)
+        result.findings.add({.kind = FindingKind::unchecked_hatch_lines, .count = options.hatch_lines});
     if (options.mesh) {
         compare_areas(layers, checks, frame.origin, options, execution, result);
         const Plan plan = plan_of(layers, options.rule, options.snap_mm);
-        for (const std::string& text : near_faces(*options.mesh, plan, execution).texts())
-            result.findings.push_back(text);
+        result.findings.add(near_faces(*options.mesh, plan, execution));
         result.heights =
             covered_heights(layers, *options.mesh, options.granted(), execution, result.findings);
     }

@@ -4,28 +4,31 @@
 #include "lamella/polygon/offset.hpp"
 
 #include "contour/distance.hpp"
-#include "core/counted.hpp"
 #include "core/executor.hpp"
 #include "pipeline/exposure_groups.hpp"
 #include "pipeline/layer_check.hpp"
 #include "pipeline/layer_heights.hpp"
 #include "pipeline/moved_cuts.hpp"
-#include "pipeline/vector_findings.hpp"
 #include "pipeline/vector_reach.hpp"
 #include "polygon/edge_tree.hpp"
 #include "scan/hatch.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <span>
+#include <utility>
 
 namespace lamella {
 
 namespace {
+
+/// Figures and findings of a plane.
+struct CheckedPlane {
+    std::uint64_t contour_vectors = 0;
+    std::uint64_t hatch_vectors = 0;
+    Findings found;
+};
 
 class VectorCheck {
   public:
@@ -34,24 +37,26 @@ class VectorCheck {
         : options_(options), rounding_(rounding), tolerance_(rounding + options.steps.simplify_mm),
           limits_(limits) {}
 
-    void check(const PlaneGroup& group, const MaterialBounds& bounds, PlaneFindings& found) const {
+    void check(const PlaneGroup& group, const MaterialBounds& bounds, CheckedPlane& checked) const {
+        Findings& found = checked.found;
         std::uint64_t all = 0;
         for (const PlaneExposure& part : group) {
             const Layer& vectors = part.polylines;
             if (part.exposure.kind == VectorKind::contour)
-                found.add(of_one_exposure(part.exposure, vectors));
+                check_exposure(part.exposure, vectors, found);
             std::uint64_t of_contours = 0;
             for (std::size_t i = 0; i < vectors.contours(); ++i)
                 of_contours += vectors.contour(i).size() - (vectors.closed(i) ? 0 : 1);
-            found.contour_vectors += of_contours;
+            checked.contour_vectors += of_contours;
             const std::span<const Point2> hatches = part.hatches;
-            found.hatch_vectors += hatches.size() / 2;
+            checked.hatch_vectors += hatches.size() / 2;
             all += of_contours + hatches.size() / 2;
             if (options_.strategy)
                 check_lines(part.exposure, vectors, hatches, found);
         }
         if (bounds.sections.empty() || bounds.sections.front().open_chains() > 0) {
-            found.unbounded += all;
+            if (all > 0)
+                found.add({.kind = FindingKind::unbounded_vectors, .count = all});
             return;
         }
         find_outside(group, bounds, found);
@@ -61,19 +66,22 @@ class VectorCheck {
     }
 
   private:
-    /// Returns findings about contours of one number. These must not cross, and none may lie within the
-    /// material of another.
-    [[nodiscard]] ContourFindings of_one_exposure(const Exposure& exposure, const Layer& vectors) const {
-        ContourFindings found = check_layer(vectors, options_.granted(), limits_).found;
-        found.misoriented.add(found.tangled);
-        if (exposure.contour > 0)
-            found.misoriented.add(found.overlapping);
-        return found;
+    /// Checks contours of one number. These must not cross, and none may lie within the material of another.
+    void check_exposure(const Exposure& exposure, const Layer& vectors, Findings& found) const {
+        Findings of_contours = check_layer(vectors, options_.granted(), limits_).found;
+        for (Finding& finding : of_contours.by_file) {
+            const bool overlapping = finding.kind == FindingKind::overlapping_rings;
+            if (overlapping && exposure.contour == 0)
+                continue;
+            if (overlapping || finding.kind == FindingKind::tangled_rings)
+                finding.kind = FindingKind::misoriented_rings;
+            found.add(std::move(finding));
+        }
     }
 
     /// Finds hatch lines that are too short.
     void check_lines(const Exposure& exposure, const Layer& layer, std::span<const Point2> hatches,
-                     PlaneFindings& found) const {
+                     Findings& found) const {
         // Lines of a contour run along the middle of thin walls.
         if (exposure.kind == VectorKind::contour &&
             contours_of(*options_.strategy, exposure.region).thin_walls == ThinWalls::line)
@@ -81,15 +89,17 @@ class VectorCheck {
         const double shortest = hatch_of(*options_.strategy, exposure.region).shortest - 2 * rounding_;
         for (std::size_t i = 0; i + 1 < hatches.size(); i += 2)
             if (distance(hatches[i], hatches[i + 1]) < shortest)
-                found.too_short.add(layer, hatches[i]);
+                found.note(FindingKind::short_lines, [&] { return where(layer, hatches[i]); });
     }
 
-    void find_outside(const PlaneGroup& group, const MaterialBounds& bounds, PlaneFindings& found) const {
+    void find_outside(const PlaneGroup& group, const MaterialBounds& bounds, Findings& found) const {
         // The material is grown a little, so that points on an edge are inside.
         Layer material = bounds.sections.front();
         for (std::size_t i = 1; i < bounds.sections.size(); ++i)
             material = combine(material, bounds.sections[i], BooleanOperation::unite, limits_);
         const double grown = 2 * tolerance_;
+        const FindingKind kind =
+            options_.strategy ? FindingKind::misplaced_vectors : FindingKind::outside_vectors;
         const EdgeTree edges(offset(material, grown, {.limits = limits_}));
         for (const PlaneExposure& part : group) {
             const double depth =
@@ -100,7 +110,7 @@ class VectorCheck {
                 continue;
             const Layer& vectors = part.polylines;
             const double nearest = std::max(0.0, depth) + grown - tolerance_;
-            Followed followed(edges, nearest, vectors, found.outside);
+            Followed followed(edges, nearest, vectors, kind, found);
             for (std::size_t i = 0; i < vectors.contours(); ++i) {
                 const auto contour = vectors.contour(i);
                 for (std::size_t k = 1; k < contour.size(); ++k)
@@ -108,7 +118,7 @@ class VectorCheck {
                 if (vectors.closed(i))
                     followed.mark(contour.back(), contour.front());
             }
-            Followed lines(edges, in_walls ? grown - tolerance_ : nearest, vectors, found.outside);
+            Followed lines(edges, in_walls ? grown - tolerance_ : nearest, vectors, kind, found);
             const std::span<const Point2> hatches = part.hatches;
             for (std::size_t i = 0; i + 1 < hatches.size(); i += 2)
                 lines.mark(hatches[i], hatches[i + 1]);
@@ -119,15 +129,17 @@ class VectorCheck {
     /// within the material.
     class Followed {
       public:
-        Followed(const EdgeTree& edges, double distance, const Layer& layer, LocatedCount& outside)
-            : edges_(edges), squared_(distance * distance), layer_(layer), outside_(outside) {}
+        /// Adds vectors outside, or nearer to the edges than the distance, to `found`.
+        Followed(const EdgeTree& edges, double distance, const Layer& layer, FindingKind kind,
+                 Findings& found)
+            : edges_(edges), squared_(distance * distance), layer_(layer), kind_(kind), found_(found) {}
 
         void mark(const Point2& from, const Point2& to) {
             if (!known_ || (from != at_ && edges_.distance_squared(segment_between(at_, from), 0) == 0))
                 inside_ = edges_.winding(from) > 0;
             const double nearest = edges_.distance_squared(segment_between(from, to), squared_ / 2);
             if (!inside_ || nearest < squared_)
-                outside_.add(layer_, from);
+                found_.note(kind_, [&] { return where(layer_, from); });
             known_ = nearest >= squared_; // otherwise the beam may have crossed an edge
             at_ = to;
         }
@@ -136,7 +148,8 @@ class VectorCheck {
         const EdgeTree& edges_;
         double squared_;
         const Layer& layer_;
-        LocatedCount& outside_;
+        FindingKind kind_;
+        Findings& found_;
         bool known_ = false;
         bool inside_ = false; ///< at at_
         Point2 at_;
@@ -148,38 +161,6 @@ class VectorCheck {
     LayerLimits limits_;
 };
 
-/// A kind of finding, its member in the checks of planes, and its count for the file.
-struct KindOfFinding {
-    LocatedCount PlaneFindings::*found;
-    std::uint64_t VectorVerification::*total;
-    FindingWords words;
-};
-
-std::array<KindOfFinding, 7> kinds_of_findings(bool strategy) {
-    return {
-        {{&PlaneFindings::open_chains, &VectorVerification::open_chains, open_chains_words},
-         {&PlaneFindings::crossings, &VectorVerification::crossings, crossings_words},
-         {&PlaneFindings::misoriented, &VectorVerification::misoriented, misoriented_words},
-         {&PlaneFindings::outside, &VectorVerification::outside,
-          strategy ? FindingWords{"vector is nearer to the edge of the material than the strategy says, or "
-                                  "outside;",
-                                  "vectors are nearer to the edge of the material than the strategy says, or "
-                                  "outside;"}
-                   : FindingWords{"vector leaves the material;", "vectors leave the material;"}},
-         {&PlaneFindings::too_short,
-          &VectorVerification::too_short,
-          {"hatch line is shorter than the strategy says;",
-           "hatch lines are shorter than the strategy says;"}},
-         {&PlaneFindings::unreached,
-          &VectorVerification::unreached_layers,
-          {"layer has more material that no vector reaches than the strategy accepts;",
-           "layers have more material that no vector reaches than the strategy accepts;"}},
-         {&PlaneFindings::inverted,
-          &VectorVerification::inverted_rings,
-          {"ring of the mesh bounds no material and has no vectors, as triangles face inwards;",
-           "rings of the mesh bound no material and have no vectors, as triangles face inwards;"}}}};
-}
-
 } // namespace
 
 VectorVerification verify_vectors(const LayerFile& file, const VerifyOptions& options,
@@ -188,9 +169,8 @@ VectorVerification verify_vectors(const LayerFile& file, const VerifyOptions& op
     const std::vector<ExposureGroup> groups = groups_of(file, options.mesh.has_value(), execution);
     VectorVerification result;
     const auto check_number = [&] {
-        result.none = options.strategy && result.contour_vectors + result.hatch_vectors == 0;
-        if (result.none)
-            result.findings.emplace_back("there are no scan vectors, and the strategy makes some");
+        if (options.strategy && result.contour_vectors + result.hatch_vectors == 0)
+            result.findings.add({.kind = FindingKind::no_vectors, .count = 1});
     };
     if (groups.empty()) {
         check_number();
@@ -204,7 +184,7 @@ VectorVerification verify_vectors(const LayerFile& file, const VerifyOptions& op
 
     const LayerLimits limits = layer_limits(execution, options.max_memory, executor.workers());
     const VectorCheck checked(options, rounding, limits);
-    std::vector<PlaneFindings> checks(planes.size());
+    std::vector<CheckedPlane> checks(planes.size());
     ProgressMeter progress(execution, Stage::polygon, planes.size());
     std::vector<std::vector<Layer>> sections; // of a range of planes, with a mesh
     std::uint64_t first = 0;                  // of the range
@@ -227,8 +207,10 @@ VectorVerification verify_vectors(const LayerFile& file, const VerifyOptions& op
             const InvertedRings inverted =
                 inverted_rings(sections[i - first].front(), options.granted(), InversionSearch::full, limits);
             if (inverted.rings > 0)
-                checks[i].inverted.add(planes[i], inverted.at, inverted.rings);
-            checks[i].inverted_mm3 = inverted.area_mm2 * planes[i].thickness();
+                checks[i].found.add({.kind = FindingKind::rings_without_vectors,
+                                     .count = inverted.rings,
+                                     .amount = inverted.area_mm2 * planes[i].thickness(),
+                                     .place = where(planes[i], inverted.at)});
         }
         progress.add(1);
     };
@@ -249,29 +231,16 @@ VectorVerification verify_vectors(const LayerFile& file, const VerifyOptions& op
     }
     progress.finish();
 
-    for (const KindOfFinding& kind : kinds_of_findings(options.strategy.has_value())) {
-        LocatedCount all;
-        for (const PlaneFindings& check : checks)
-            all.add(check.*kind.found);
-        result.*kind.total = all.total;
-        append_finding(all, kind.words, result.findings);
-    }
-    for (const PlaneFindings& check : checks) {
+    for (const CheckedPlane& check : checks) {
         result.contour_vectors += check.contour_vectors;
         result.hatch_vectors += check.hatch_vectors;
-        result.unbounded += check.unbounded;
-        result.inverted_mm3 += check.inverted_mm3;
-        result.unreached_mm2 += check.unreached_mm2;
+        result.findings.add(check.found);
     }
     check_number();
-    result.height_overlaps = overlapping_heights(planes, options.granted(), result.findings);
+    add_height_overlaps(result.findings, planes, options.granted());
     if (options.mesh)
         result.heights =
             covered_heights(planes, *options.mesh, options.granted(), execution, result.findings);
-    if (result.unbounded > 0)
-        result.findings.push_back(
-            fmt::format("{} have no closed contour around them that would bound the material",
-                        counted(result.unbounded, "vector")));
     return result;
 }
 

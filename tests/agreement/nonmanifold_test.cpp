@@ -33,7 +33,7 @@ LayerStack sound_slices(const Triangles& triangles, const std::vector<double>& z
     const TriangleSoup mesh(triangles);
     const Verification found = verify(layers, {.mesh = mesh, .rule = plan_listed(z, at).rule});
     EXPECT_TRUE(found.ok());
-    EXPECT_EQ(found.findings, std::vector<std::string>{});
+    EXPECT_EQ(found.findings.texts(), std::vector<std::string>{});
     return layers;
 }
 
@@ -136,7 +136,7 @@ TEST(NonManifold, ABoxTwiceIsTwoEqualRings) {
     const LayerStack layers = slice_at(test::box_twice(), {0, 1, 2});
     const Verification found = verify(layers);
     EXPECT_TRUE(found.ok()); // bodies may overlap
-    EXPECT_EQ(found.overlapping, 3U);
+    EXPECT_EQ(found.findings.count(FindingKind::overlapping_rings), 3U);
     for (const Layer& layer : layers) {
         EXPECT_EQ(areas_of_rings(layer), (Areas{4, 4}));
         EXPECT_TRUE(std::equal(layer.contour(0).begin(), layer.contour(0).end(), layer.contour(1).begin(),
@@ -168,15 +168,16 @@ TEST(NonManifold, OverlappingBoxesStayTwoRingsThatCross) {
     const LayerStack layers = slice_at(test::boxes_overlapping(), {1});
     EXPECT_EQ(areas_of_rings(layers[0]), (Areas{8, 16}));
     const Verification found = verify(layers);
-    EXPECT_EQ(found.crossings, 2U);
-    EXPECT_EQ(found.misoriented, 0U);
-    EXPECT_EQ(found.overlapping, 1U);
+    EXPECT_EQ(found.findings.count(FindingKind::crossings), 2U);
+    EXPECT_EQ(found.findings.count(FindingKind::misoriented_rings), 0U);
+    EXPECT_EQ(found.findings.count(FindingKind::tangled_rings), 0U);
+    EXPECT_EQ(found.findings.count(FindingKind::overlapping_rings), 1U);
 }
 
 TEST(NonManifold, ABoxInsideOutIsMisoriented) {
     const LayerStack layers = slice_at(test::flipped(test::box_triangles({0, 0, 0}, {2, 2, 3})), {1});
     EXPECT_EQ(areas_of_rings(layers[0]), Areas{-4});
-    EXPECT_EQ(verify(layers).misoriented, 1U);
+    EXPECT_EQ(verify(layers).findings.count(FindingKind::misoriented_rings), 1U);
 }
 
 TEST(NonManifold, DegenerateTrianglesChangeNothing) {
@@ -216,7 +217,7 @@ TEST(NonManifold, EveryNumberOfWedgesAroundAnEdgeClosesWithoutCrossings) {
                 const LayerStack layers = slice(mesh, plan.plan);
                 ASSERT_NO_FATAL_FAILURE(expect_well_formed(layers, plan.plan));
                 const Verification found = verify(layers, {.mesh = mesh, .rule = plan.plan.rule});
-                EXPECT_EQ(found.findings, std::vector<std::string>{});
+                EXPECT_EQ(found.findings.texts(), std::vector<std::string>{});
                 for (const Layer& layer : layers)
                     EXPECT_LE(layer.rings, static_cast<std::size_t>(n));
             }

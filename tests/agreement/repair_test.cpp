@@ -228,8 +228,8 @@ TEST(RepairedMeshes, LayersOfMeshesWithVerticesOnEdgesVerifyOnceTheirGapsAreClos
             layer = std::move(closed.layer);
         }
         const Verification verified = verify(layers);
-        ASSERT_TRUE(verified.ok()) << verified.findings.front();
-        ASSERT_EQ(verified.overlapping, 0U);
+        ASSERT_TRUE(verified.ok()) << verified.findings.texts().front();
+        ASSERT_EQ(verified.findings.count(FindingKind::overlapping_rings), 0U);
     }
     EXPECT_GT(left_out, 0U);
 }

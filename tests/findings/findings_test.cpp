@@ -3,9 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <map>
 #include <random>
 #include <string>
 #include <thread>
+#include <variant>
 #include <vector>
 
 namespace lamella {
@@ -125,11 +127,11 @@ TEST(FindingLog, GivesWhatOtherProcessesFound) {
 
 TEST(Findings, ReportTheFirstThatStrictRefuses) {
     Findings found;
-    EXPECT_EQ(found.first_warning(), nullptr);
+    EXPECT_EQ(found.first(Severity::warning), nullptr);
     found.add({.kind = FindingKind::unreached_material, .file = 1, .count = 1, .amount = 2, .layers = 1});
     found.add({.kind = FindingKind::near_faces, .file = 3, .count = 1, .amount = 2, .layers = 1});
-    ASSERT_NE(found.first_warning(), nullptr);
-    EXPECT_EQ(found.first_warning()->kind, FindingKind::near_faces) << "in the order of the kinds";
+    ASSERT_NE(found.first(Severity::warning), nullptr);
+    EXPECT_EQ(found.first(Severity::warning)->kind, FindingKind::near_faces) << "in the order of the kinds";
     Findings more;
     more.add({.kind = FindingKind::near_faces, .file = 0, .count = 1, .amount = 3, .layers = 1});
     found.add(more);
@@ -159,6 +161,41 @@ TEST(Findings, CountInTheOrderOfTheFileWithThePlaceOfTheFirst) {
     EXPECT_EQ(file.of(FindingKind::no_contours, 0).place, "byte 120");
     EXPECT_EQ(file.of(FindingKind::no_contours).count, 3U);
     EXPECT_EQ(file.of(FindingKind::nothing_left).place, "byte 210");
+}
+
+TEST(Findings, GiveTheNumbersOfACheckByTheirKeys) {
+    Findings found;
+    found.add({.kind = FindingKind::misoriented_rings, .count = 2});
+    found.add({.kind = FindingKind::tangled_rings, .count = 3});
+    found.add({.kind = FindingKind::unreached_layers, .count = 1, .amount = 0.5});
+    const auto keys_of = [&](FindingOrigin check) {
+        std::map<std::string, double> numbers;
+        for (const FindingNumber& number : found.numbers(check))
+            EXPECT_TRUE(
+                numbers
+                    .emplace(number.key,
+                             std::visit([](auto value) { return static_cast<double>(value); }, number.value))
+                    .second);
+        return numbers;
+    };
+    EXPECT_EQ(keys_of(FindingOrigin::layers), (std::map<std::string, double>{{"open_chains", 0},
+                                                                             {"crossings", 0},
+                                                                             {"misoriented", 5},
+                                                                             {"overlapping", 0},
+                                                                             {"height_overlaps", 0},
+                                                                             {"hatches", 0},
+                                                                             {"displaced", 0}}));
+    EXPECT_EQ(keys_of(FindingOrigin::vectors), (std::map<std::string, double>{{"open_chains", 0},
+                                                                              {"crossings", 0},
+                                                                              {"misoriented", 2},
+                                                                              {"outside", 0},
+                                                                              {"too_short", 0},
+                                                                              {"unreached_layers", 1},
+                                                                              {"unreached_mm2", 0.5},
+                                                                              {"inverted_rings", 0},
+                                                                              {"inverted_mm3", 0},
+                                                                              {"height_overlaps", 0},
+                                                                              {"unbounded", 0}}));
 }
 
 TEST(Findings, AddUpLaterLayersOfAFile) {

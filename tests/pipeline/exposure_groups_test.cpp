@@ -16,9 +16,9 @@ TEST_F(VerifyVectors, TakesContoursThatFilesDoNotNumber) {
     EXPECT_TRUE(with_nothing().ok());
     EXPECT_TRUE(with_mesh().ok());
     both.layers[3] = layer_of({rectangle(1, 1, 9, 9), rectangle(2, 2, 8, 8)});
-    EXPECT_EQ(verify_vectors(file_of({both})).misoriented, 1U);
+    EXPECT_EQ(verify_vectors(file_of({both})).findings.count(FindingKind::misoriented_rings), 1U);
     both.exposure->contour = 0;
-    EXPECT_EQ(verify_vectors(file_of({both})).misoriented, 0U);
+    EXPECT_EQ(verify_vectors(file_of({both})).findings.count(FindingKind::misoriented_rings), 0U);
 }
 
 TEST_F(VerifyVectors, DistinguishesParts) {
@@ -30,7 +30,7 @@ TEST_F(VerifyVectors, DistinguishesParts) {
         points[0].x += 30;
         points[1].x += 30;
     });
-    EXPECT_EQ(with_strategy().outside, 1U);
+    EXPECT_EQ(number(with_strategy(), "outside"), 1U);
 }
 
 } // namespace

@@ -19,7 +19,7 @@ class HeightsOfLayers : public testing::Test {
 TEST_F(HeightsOfLayers, ReportWhichPartOfTheMeshTheyCover) {
     Verification found = verify(layers_, {.mesh = mesh_});
     ASSERT_TRUE(found.heights);
-    EXPECT_EQ(found.heights->gaps, 0U);
+    EXPECT_EQ(found.findings.count(FindingKind::layer_gaps), 0U);
     EXPECT_NEAR(found.heights->top, 2, 1e-9);
     EXPECT_TRUE(found.ok());
     layers_.erase(layers_.begin() + 5, layers_.end());
@@ -35,11 +35,11 @@ TEST_F(HeightsOfLayers, HaveNoGaps) {
     layers_.erase(layers_.begin() + 7);
     const Verification found = verify(layers_, {.mesh = mesh_});
     EXPECT_FALSE(found.ok());
-    EXPECT_EQ(found.heights->gaps, 1U);
-    EXPECT_NEAR(found.heights->gaps_mm, 0.1, 1e-9);
-    ASSERT_EQ(found.findings.size(), 1U);
-    EXPECT_NE(found.findings.front().find("from z = 0.7 to 0.8 mm"), std::string::npos)
-        << found.findings.front();
+    EXPECT_EQ(found.findings.count(FindingKind::layer_gaps), 1U);
+    EXPECT_NEAR(found.findings.of(FindingKind::layer_gaps).amount, 0.1, 1e-9);
+    ASSERT_EQ(found.findings.texts().size(), 1U);
+    EXPECT_NE(found.findings.texts().front().find("from z = 0.7 to 0.8 mm"), std::string::npos)
+        << found.findings.texts().front();
     EXPECT_TRUE(verify(layers_).ok()) << "nothing says that there is anything between";
 }
 
@@ -47,7 +47,7 @@ TEST_F(HeightsOfLayers, MayLackWhereTheMeshHasNothing) {
     const Mesh apart = TriangleSoup(test::joined(
         {test::box_triangles({0, 0, 0}, {20, 10, 0.7F}), test::box_triangles({0, 0, 0.8F}, {20, 10, 2})}));
     layers_.erase(layers_.begin() + 7);
-    EXPECT_EQ(verify(layers_, {.mesh = apart}).heights->gaps, 0U);
+    EXPECT_EQ(verify(layers_, {.mesh = apart}).findings.count(FindingKind::layer_gaps), 0U);
 }
 
 } // namespace

@@ -11,7 +11,7 @@ namespace {
 TEST_F(VerifyVectors, FindsThatAllHatchesAreMissing) {
     std::erase_if(parts_, [](const LayerPart& part) { return part.exposure->kind == VectorKind::hatch; });
     for (const VectorVerification& found : {with_all(), with_strategy()})
-        EXPECT_EQ(found.unreached_layers, 10U);
+        EXPECT_EQ(found.findings.count(FindingKind::unreached_layers), 10U);
     EXPECT_TRUE(with_mesh().ok());
 }
 
@@ -19,13 +19,13 @@ TEST_F(VerifyVectors, FindsWhatIsNotFilled) {
     const std::vector<LayerPart> sound = parts_;
     change_hatches("core hatch", 4,
                    [](std::vector<Point2>& points) { points.resize(points.size() / 2 & ~1U); });
-    EXPECT_EQ(with_all().unreached_layers, 1U);
-    EXPECT_EQ(with_strategy().unreached_layers, 1U);
+    EXPECT_EQ(with_all().findings.count(FindingKind::unreached_layers), 1U);
+    EXPECT_EQ(with_strategy().findings.count(FindingKind::unreached_layers), 1U);
     EXPECT_TRUE(with_mesh().ok());
 
     parts_ = sound;
     change_hatches("upskin hatch", 9, [](std::vector<Point2>& points) { points.clear(); });
-    EXPECT_EQ(with_all().unreached_layers, 1U) << "a skin is missing";
+    EXPECT_EQ(with_all().findings.count(FindingKind::unreached_layers), 1U) << "a skin is missing";
 }
 
 TEST_F(VerifyVectors, FindsMaterialThatNoVectorReaches) {
@@ -33,23 +33,23 @@ TEST_F(VerifyVectors, FindsMaterialThatNoVectorReaches) {
     strategy_ = {};
     parts_ = scanned(slice(mesh_, plan_), strategy_, "fin");
     EXPECT_TRUE(with_all().ok());
-    EXPECT_LT(with_all().unreached_mm2, 0.01);
+    EXPECT_LT(with_all().findings.of(FindingKind::unreached_layers).amount, 0.01);
     EXPECT_TRUE(with_strategy().ok());
     change_hatches("core contour 1", 3, [](std::vector<Point2>& points) { points.clear(); });
     const VectorVerification found = with_all();
     EXPECT_FALSE(found.ok());
-    EXPECT_EQ(found.unreached_layers, 1U);
-    EXPECT_NEAR(found.unreached_mm2, 1.6, 0.01);
-    ASSERT_EQ(found.findings.size(), 1U);
-    EXPECT_TRUE(found.findings.front().starts_with(
+    EXPECT_EQ(found.findings.count(FindingKind::unreached_layers), 1U);
+    EXPECT_NEAR(found.findings.of(FindingKind::unreached_layers).amount, 1.6, 0.01);
+    ASSERT_EQ(found.findings.texts().size(), 1U);
+    EXPECT_TRUE(found.findings.texts().front().starts_with(
         "1 layer has more material that no vector reaches than the strategy accepts; "))
-        << found.findings.front();
+        << found.findings.texts().front();
     strategy_.accepted_mm2 = 2;
     EXPECT_TRUE(with_all().ok());
     // Lines of thin walls may be near to the edge of the material, and not beyond.
     strategy_ = {};
     change_hatches("core contour 1", 4, [](std::vector<Point2>& points) { points[0].x -= 1; });
-    EXPECT_EQ(with_all().outside, 1U);
+    EXPECT_EQ(number(with_all(), "outside"), 1U);
 }
 
 TEST_F(VerifyVectors, FindsThatTheMiddleOfAWallIsNotFilled) {
@@ -57,15 +57,16 @@ TEST_F(VerifyVectors, FindsThatTheMiddleOfAWallIsNotFilled) {
     strategy_ = {};
     parts_ = scanned(slice(mesh_, plan_), strategy_, "wall");
     EXPECT_TRUE(with_all().ok()) << "where the hatch has no lines there is one along the middle";
-    EXPECT_LT(with_all().unreached_mm2, 0.01);
+    EXPECT_LT(with_all().findings.of(FindingKind::unreached_layers).amount, 0.01);
     strategy_.contours.thin_walls = ThinWalls::leave_out;
     parts_ = scanned(slice(mesh_, plan_), strategy_, "wall");
     const VectorVerification found = with_all();
-    EXPECT_GT(found.unreached_layers, 3U);
-    EXPECT_GT(found.unreached_mm2, 0.05 * 19.8 * 3);
-    EXPECT_NEAR(with_strategy().unreached_mm2, found.unreached_mm2, 0.01)
+    EXPECT_GT(found.findings.count(FindingKind::unreached_layers), 3U);
+    EXPECT_GT(found.findings.of(FindingKind::unreached_layers).amount, 0.05 * 19.8 * 3);
+    EXPECT_NEAR(with_strategy().findings.of(FindingKind::unreached_layers).amount,
+                found.findings.of(FindingKind::unreached_layers).amount, 0.01)
         << "within its contours it is known";
-    EXPECT_EQ(with_mesh().unreached_layers, 0U) << "nobody asks for any";
+    EXPECT_EQ(with_mesh().findings.count(FindingKind::unreached_layers), 0U) << "nobody asks for any";
 }
 
 TEST_F(VerifyVectors, FindsWhatSkinsDoNotFill) {
@@ -75,7 +76,7 @@ TEST_F(VerifyVectors, FindsWhatSkinsDoNotFill) {
         parts_ = sound;
         change_hatches(name, layer,
                        [](std::vector<Point2>& points) { points.resize(points.size() / 2 & ~1U); });
-        EXPECT_EQ(with_all().unreached_layers, 1U) << name;
+        EXPECT_EQ(with_all().findings.count(FindingKind::unreached_layers), 1U) << name;
     }
 }
 

@@ -39,7 +39,7 @@ TEST(Verify, FindsNothingInSoundLayers) {
     EXPECT_EQ(found.points, 12U);
     EXPECT_EQ(found.volume_mm3, 12 + 16);
     EXPECT_FALSE(found.max_area_error_mm2.has_value());
-    EXPECT_TRUE(found.findings.empty());
+    EXPECT_TRUE(found.findings.texts().empty());
 }
 
 TEST(Verify, NamesTheContourOfACoordinateThatIsNoLength) {
@@ -77,16 +77,16 @@ TEST(Verify, NamesTheFirstPlaceOfEachKindOfFinding) {
         at(6, layer_of({reversed(rectangle(0, 0, 4, 4))}, {{{1, 9}, {8, 9}}}))};
     const Verification found = verify(layers);
     EXPECT_FALSE(found.ok());
-    EXPECT_EQ(found.open_chains, 2U);
+    EXPECT_EQ(found.findings.count(FindingKind::open_contours), 2U);
     ASSERT_EQ(found.open_layers.size(), 2U);
     EXPECT_EQ(found.open_layers[0].index, 5U);
     EXPECT_EQ(found.open_layers[1].z, 6.5);
     EXPECT_EQ(found.open_layers[1].gaps.longest_mm, 7);
-    EXPECT_EQ(found.crossings, 2U);
-    EXPECT_EQ(found.misoriented, 1U);
-    EXPECT_EQ(found.overlapping, 1U);
+    EXPECT_EQ(found.findings.count(FindingKind::crossings), 2U);
+    EXPECT_EQ(found.findings.count(FindingKind::misoriented_rings), 1U);
+    EXPECT_EQ(found.findings.count(FindingKind::overlapping_rings), 1U);
     EXPECT_EQ(
-        found.findings,
+        found.findings.texts(),
         (std::vector<std::string>{
             "2 contours are not closed, the first in layer 5 (z 5.5 mm) at (7, 7)",
             "8.414 mm are missing between their ends, in 2 layers; the longest gap, of 7 mm, is in layer 6 "
@@ -110,15 +110,15 @@ TEST(Verify, CountsNoMoreCrossingsOfALayerThanAnybodyReads) {
     const Layer cross = at(1, layer_of({{{0, 0}, {2, 2}, {2, 0}, {0, 2}}}));
     const Verification found = verify(LayerStack{tangle, cross});
     EXPECT_FALSE(found.ok());
-    EXPECT_GT(found.crossings, 4'000'000U);
-    ASSERT_FALSE(found.findings.empty());
-    EXPECT_NE(found.findings[0].find(
+    EXPECT_GT(found.findings.count(FindingKind::crossings), 4'000'000U);
+    ASSERT_FALSE(found.findings.texts().empty());
+    EXPECT_NE(found.findings.texts()[0].find(
                   " crossings of contours, or more (rings of such a layer were not checked), the "
                   "first in layer 0 (z 0.5 mm) at ("),
               std::string::npos)
-        << found.findings[0];
+        << found.findings.texts()[0];
     const Verification other = verify(LayerStack{cross});
-    EXPECT_EQ(other.findings[0], "1 crossing of contours, the first in layer 1 (z 1.5 mm) at (1, 1)");
+    EXPECT_EQ(other.findings.texts()[0], "1 crossing of contours, the first in layer 1 (z 1.5 mm) at (1, 1)");
 }
 
 TEST(Verify, DistinguishesAPositiveRingThatCrossesItselfFromAnInvertedOne) {
@@ -126,13 +126,13 @@ TEST(Verify, DistinguishesAPositiveRingThatCrossesItselfFromAnInvertedOne) {
     const LayerStack layers{at(0, layer_of({{{0, 5}, {1, 5.5}, {10, 0}, {10, 10}, {1, 4.5}}}))};
     const Verification found = verify(layers);
     EXPECT_GT(found.volume_mm3, 0);
-    EXPECT_EQ(found.misoriented, 1U);
-    ASSERT_EQ(found.findings.size(), 2U);
-    EXPECT_EQ(found.findings[0].find("1 crossing of contours"), 0U) << found.findings[0];
-    EXPECT_EQ(
-        found.findings[1].find("1 ring bounds no material though its area is positive: it crosses itself"),
-        0U)
-        << found.findings[1];
+    EXPECT_EQ(found.findings.count(FindingKind::tangled_rings), 1U);
+    ASSERT_EQ(found.findings.texts().size(), 2U);
+    EXPECT_EQ(found.findings.texts()[0].find("1 crossing of contours"), 0U) << found.findings.texts()[0];
+    EXPECT_EQ(found.findings.texts()[1].find(
+                  "1 ring bounds no material though its area is positive: it crosses itself"),
+              0U)
+        << found.findings.texts()[1];
 }
 
 TEST(Verify, IsTheSameForAnyNumberOfThreads) {
@@ -149,16 +149,18 @@ TEST(Verify, IsTheSameForAnyNumberOfThreads) {
         layers.push_back(at(i, layer_of(rings)));
     }
     const Verification one = verify(layers, {}, {.threads = 1});
-    EXPECT_GT(one.crossings, 0U);
-    EXPECT_GT(one.misoriented, 0U);
-    EXPECT_GT(one.overlapping, 0U);
+    EXPECT_GT(one.findings.count(FindingKind::crossings), 0U);
+    EXPECT_GT(one.findings.count(FindingKind::misoriented_rings), 0U);
+    EXPECT_GT(one.findings.count(FindingKind::overlapping_rings), 0U);
     for (const unsigned threads : {2U, 7U}) {
         const Verification many = verify(layers, {}, {.threads = threads});
-        EXPECT_EQ(many.crossings, one.crossings);
-        EXPECT_EQ(many.misoriented, one.misoriented);
-        EXPECT_EQ(many.overlapping, one.overlapping);
+        EXPECT_EQ(many.findings.count(FindingKind::crossings), one.findings.count(FindingKind::crossings));
+        EXPECT_EQ(many.findings.count(FindingKind::misoriented_rings),
+                  one.findings.count(FindingKind::misoriented_rings));
+        EXPECT_EQ(many.findings.count(FindingKind::overlapping_rings),
+                  one.findings.count(FindingKind::overlapping_rings));
         EXPECT_EQ(many.volume_mm3, one.volume_mm3);
-        EXPECT_EQ(many.findings, one.findings);
+        EXPECT_EQ(many.findings.texts(), one.findings.texts());
     }
 }
 
@@ -175,7 +177,7 @@ TEST(Verify, ComparesAreasWithTheMesh) {
     const Verification differing = verify(wrong, {.mesh = mesh});
     EXPECT_FALSE(differing.ok());
     EXPECT_EQ(differing.max_area_error_mm2, 0.25);
-    EXPECT_EQ(differing.findings,
+    EXPECT_EQ(differing.findings.texts(),
               std::vector<std::string>{
                   "1 layer is of another area than the mesh's section, the first is layer 1 (z "
                   "1.5 mm): 16.25 mm2 instead of 16 mm2, 0.25 mm2 off"});
@@ -184,8 +186,9 @@ TEST(Verify, ComparesAreasWithTheMesh) {
 TEST(Verify, MissesLayersThatAreNotThere) {
     const TriangleSoup mesh = box_mesh({0, 0, 0}, {4, 4, 3});
     const LayerStack empty{at(0, Layer{})};
-    EXPECT_FALSE(verify(empty, {.mesh = mesh}).areas_agree);
-    EXPECT_TRUE(verify(LayerStack{at(5, Layer{})}, {.mesh = mesh}).areas_agree); // above the box
+    EXPECT_EQ(verify(empty, {.mesh = mesh}).findings.count(FindingKind::other_areas), 1U);
+    EXPECT_EQ(verify(LayerStack{at(5, Layer{})}, {.mesh = mesh}).findings.count(FindingKind::other_areas),
+              0U); // above the box
 }
 
 TEST(Verify, GrantsTheQuantumOfAFormat) {
@@ -213,13 +216,15 @@ TEST(Verify, GrantsWhatSinglePrecisionMovesOfALayerWhereItLies) {
 
 TEST(Verify, HoldsNoRingToAnOrientationThatRoundingMayHaveTurned) {
     const Layer thin = at(0, layer_of({reversed(rectangle(0, 0, 5, 0.001))}));
-    EXPECT_EQ(verify(LayerStack{thin}).misoriented, 1U);
-    EXPECT_EQ(verify(LayerStack{thin}, {.rounding = {.step_mm = 0.001}}).misoriented, 0U);
-    EXPECT_EQ(verify(LayerStack{thin}, {.rounding = {.step_mm = 0.0001}}).misoriented, 1U);
+    EXPECT_EQ(verify(LayerStack{thin}).findings.count(FindingKind::misoriented_rings), 1U);
+    EXPECT_TRUE(verify(LayerStack{thin}, {.rounding = {.step_mm = 0.001}}).ok());
+    EXPECT_EQ(verify(LayerStack{thin}, {.rounding = {.step_mm = 0.0001}})
+                  .findings.count(FindingKind::misoriented_rings),
+              1U);
     // A ring of a few units in the last place, such as a plane makes just below the tip of a part.
     const double x = 43.1;
     const double next = std::nextafter(x, 50.0);
-    EXPECT_EQ(verify(LayerStack{at(0, layer_of({reversed(rectangle(x, x, next, next))}))}).misoriented, 0U);
+    EXPECT_TRUE(verify(LayerStack{at(0, layer_of({reversed(rectangle(x, x, next, next))}))}).ok());
 }
 
 TEST(Verify, TakesLayersAtTheSameHeightOrNextToIt) {
@@ -244,12 +249,12 @@ TEST(Verify, FindsLayersThatOverlapInHeight) {
     std::swap(layers[0], layers[2]); // any order will do
     const Verification found = verify(layers);
     EXPECT_FALSE(found.ok());
-    EXPECT_EQ(found.height_overlaps, 1U);
-    ASSERT_EQ(found.findings.size(), 1U);
-    EXPECT_NE(
-        found.findings[0].find("layer 2 (z 2.5 mm) begins at z = 2 mm, layer 1 (z 1.5 mm) ends at 2.001 mm"),
-        std::string::npos)
-        << found.findings[0];
+    EXPECT_EQ(found.findings.count(FindingKind::height_overlaps), 1U);
+    ASSERT_EQ(found.findings.texts().size(), 1U);
+    EXPECT_NE(found.findings.texts()[0].find(
+                  "layer 2 (z 2.5 mm) begins at z = 2 mm, layer 1 (z 1.5 mm) ends at 2.001 mm"),
+              std::string::npos)
+        << found.findings.texts()[0];
     EXPECT_TRUE(verify(layers, {.rounding = {.step_mm = 0.001}}).ok());
     EXPECT_TRUE(verify(layers, {.tolerance_mm = 0.0005}).ok());
     EXPECT_FALSE(verify(layers, {.tolerance_mm = 0.0004}).ok());
@@ -259,7 +264,7 @@ TEST(Verify, FindsLayersThatOverlapInHeight) {
             layers[i].z = 0.5;
             layers[i].top = tops[i];
         }
-        EXPECT_EQ(verify(layers).height_overlaps, 1U) << "in any order";
+        EXPECT_EQ(verify(layers).findings.count(FindingKind::height_overlaps), 1U) << "in any order";
     }
 }
 
@@ -267,9 +272,9 @@ TEST(Verify, ComparesNoAreaOfLayersWithOpenChains) {
     const TriangleSoup mesh = box_mesh({0, 0, 0}, {4, 4, 3});
     const Verification found = verify(LayerStack{at(0, layer_of({}, {{{0, 0}, {4, 0}}}))}, {.mesh = mesh});
     EXPECT_FALSE(found.ok());
-    EXPECT_TRUE(found.areas_agree);
+    EXPECT_EQ(found.findings.count(FindingKind::other_areas), 0U);
     EXPECT_FALSE(found.max_area_error_mm2);
-    EXPECT_EQ(found.findings.back(), "1 layer with open contours was not compared with the mesh");
+    EXPECT_EQ(found.findings.texts().back(), "1 layer with open contours was not compared with the mesh");
 }
 
 TEST(Verify, ComparesWhereLayersLieWithTheMesh) {
@@ -282,11 +287,11 @@ TEST(Verify, ComparesWhereLayersLieWithTheMesh) {
     EXPECT_TRUE(moved_by(0, 0).ok());
     for (const Verification& found : {moved_by(1e-6, 0), moved_by(0, 0.5), moved_by(-500, 20)}) {
         EXPECT_FALSE(found.ok());
-        EXPECT_TRUE(found.areas_agree);
-        EXPECT_EQ(found.displaced, 1U);
+        EXPECT_EQ(found.findings.count(FindingKind::other_areas), 0U);
+        EXPECT_EQ(found.findings.count(FindingKind::displaced_layers), 1U);
     }
     EXPECT_EQ(
-        moved_by(0.5, -1).findings,
+        moved_by(0.5, -1).findings.texts(),
         std::vector<std::string>{"1 layer lies elsewhere than the mesh's section, the first is layer 1 (z "
                                  "1.5 mm): its centre is at (2.5, 1) mm instead of (2, 2)"});
     // What a format rounds is granted.

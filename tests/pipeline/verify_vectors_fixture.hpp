@@ -12,9 +12,12 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <utility>
+#include <variant>
 #include <vector>
 
 namespace lamella::verify_vectors_cases {
@@ -23,6 +26,14 @@ using test::box_mesh;
 using test::file_of;
 using test::layer_of;
 using test::rectangle;
+
+/// Returns the number that JSON has by this key.
+inline std::uint64_t number(const VectorVerification& found, std::string_view key) {
+    for (const FindingNumber& one : found.findings.numbers(FindingOrigin::vectors))
+        if (one.key == key)
+            return std::get<std::uint64_t>(one.value);
+    throw std::out_of_range(std::string(key));
+}
 
 /// The vectors of layers, as a file has them.
 inline std::vector<LayerPart> scanned(const LayerStack& layers, const ScanStrategy& strategy,

@@ -21,11 +21,11 @@ TEST_F(VerifyVectors, FindsNothingInWhatScanMakes) {
         parts_ = scanned(slice(mesh_, plan_), strategy_, "block");
         for (const VectorVerification& found : {with_all(), with_strategy(), with_mesh(), with_nothing()}) {
             EXPECT_TRUE(found.ok());
-            EXPECT_EQ(found.findings, std::vector<std::string>());
+            EXPECT_EQ(found.findings.texts(), std::vector<std::string>());
             EXPECT_EQ(found.layers, 10U);
             EXPECT_EQ(found.contour_vectors, 80U) << "the beam need not stop at diagonals of sides";
             EXPECT_GT(found.hatch_vectors, 1000U);
-            EXPECT_EQ(found.unbounded, 0U);
+            EXPECT_EQ(found.findings.count(FindingKind::unbounded_vectors), 0U);
         }
     }
 }
@@ -34,8 +34,8 @@ TEST_F(VerifyVectors, IsTheSameForAnyNumberOfThreads) {
     change_hatches("core hatch", 5, [](std::vector<Point2>& points) { points[0].x += 100; });
     const VectorVerification one = verify_vectors(file_of(parts_), {.mesh = mesh_}, {.threads = 1});
     const VectorVerification four = verify_vectors(file_of(parts_), {.mesh = mesh_}, {.threads = 4});
-    EXPECT_EQ(one.findings, four.findings);
-    EXPECT_EQ(one.outside, four.outside);
+    EXPECT_EQ(one.findings.texts(), four.findings.texts());
+    EXPECT_EQ(number(one, "outside"), number(four, "outside"));
 }
 
 TEST_F(VerifyVectors, FindsTheSameIfLayersAreNotInMemory) {
@@ -62,14 +62,15 @@ TEST_F(VerifyVectors, FindsTheSameIfLayersAreNotInMemory) {
             if (by_strategy)
                 options.strategy = strategy_;
             const VectorVerification expected = verify_vectors(held, options, {.threads = 1});
-            EXPECT_EQ(expected.outside, 1U);
+            EXPECT_EQ(number(expected, "outside"), 1U);
             for (const unsigned threads : {1U, 2U, 7U}) {
                 const LayerFile file = read_layers(bytes, "a.ovf", {.kept = KeptPlanes::none});
                 ASSERT_GT(file.plane_bytes, 0U);
                 const VectorVerification found = verify_vectors(file, options, {.threads = threads});
-                EXPECT_EQ(found.findings, expected.findings);
+                EXPECT_EQ(found.findings.texts(), expected.findings.texts());
                 EXPECT_EQ(found.hatch_vectors, expected.hatch_vectors);
-                EXPECT_EQ(found.unreached_mm2, expected.unreached_mm2);
+                EXPECT_EQ(found.findings.of(FindingKind::unreached_layers).amount,
+                          expected.findings.of(FindingKind::unreached_layers).amount);
             }
         }
     }
@@ -79,10 +80,10 @@ TEST_F(VerifyVectors, FindsVectorsThatLeaveTheMaterial) {
     change_hatches("core hatch", 5, [](std::vector<Point2>& points) { points[0].x = 21; });
     for (const VectorVerification& found : {with_all(), with_strategy(), with_mesh(), with_nothing()}) {
         EXPECT_FALSE(found.ok());
-        EXPECT_EQ(found.outside, 1U);
-        ASSERT_FALSE(found.findings.empty());
-        EXPECT_NE(found.findings.front().find("layer 5 (z 0.55 mm)"), std::string::npos)
-            << found.findings.front();
+        EXPECT_EQ(number(found, "outside"), 1U);
+        ASSERT_FALSE(found.findings.texts().empty());
+        EXPECT_NE(found.findings.texts().front().find("layer 5 (z 0.55 mm)"), std::string::npos)
+            << found.findings.texts().front();
     }
 }
 
@@ -92,14 +93,14 @@ TEST_F(VerifyVectors, FindsVectorsThatLieOutsideAsAWhole) {
             points[i].x += 100;
     });
     for (const VectorVerification& found : {with_all(), with_strategy(), with_mesh(), with_nothing()})
-        EXPECT_EQ(found.outside, 3U);
+        EXPECT_EQ(number(found, "outside"), 3U);
 }
 
 TEST_F(VerifyVectors, FindsVectorsWithinHoles) {
     const Mesh hollow =
         TriangleSoup(test::joined({test::box_triangles({0, 0, 0}, {20, 10, 1}),
                                    test::flipped(test::box_triangles({5, 3, 0}, {8, 6, 1}))}));
-    EXPECT_GT(verify_vectors(file_of(parts_), {.mesh = hollow}).outside, 100U);
+    EXPECT_GT(number(verify_vectors(file_of(parts_), {.mesh = hollow}), "outside"), 100U);
 }
 
 TEST_F(VerifyVectors, HoldsDistancesAgainstTheStrategy) {
@@ -107,15 +108,15 @@ TEST_F(VerifyVectors, HoldsDistancesAgainstTheStrategy) {
         points.push_back({1, 0.16}); // the border is at 0.2
         points.push_back({3, 0.16});
     });
-    EXPECT_EQ(with_all().outside, 1U);
-    EXPECT_EQ(with_strategy().outside, 1U);
+    EXPECT_EQ(number(with_all(), "outside"), 1U);
+    EXPECT_EQ(number(with_strategy(), "outside"), 1U);
     EXPECT_TRUE(with_mesh().ok());
-    EXPECT_EQ(with_nothing().outside, 0U);
+    EXPECT_EQ(number(with_nothing(), "outside"), 0U);
 }
 
 TEST_F(VerifyVectors, ContoursHaveTheirDistance) {
     std::swap(part("core contour 1").layers[3], part("core contour 2").layers[3]);
-    EXPECT_EQ(with_all().outside, 4U);
+    EXPECT_EQ(number(with_all(), "outside"), 4U);
     EXPECT_TRUE(with_mesh().ok());
     EXPECT_FALSE(with_nothing().ok()) << "the second one lies around the first one";
 }
@@ -125,8 +126,8 @@ TEST_F(VerifyVectors, FindsLinesThatAreTooShort) {
         points.push_back({5, 5});
         points.push_back({5.09, 5});
     });
-    EXPECT_EQ(with_all().too_short, 1U);
-    EXPECT_EQ(with_strategy().too_short, 1U);
+    EXPECT_EQ(with_all().findings.count(FindingKind::short_lines), 1U);
+    EXPECT_EQ(with_strategy().findings.count(FindingKind::short_lines), 1U);
     EXPECT_TRUE(with_mesh().ok());
 }
 
@@ -137,15 +138,15 @@ TEST_F(VerifyVectors, FindsWhatIsWrongWithContours) {
     vectors.offsets = other.offsets;
     vectors.rings = other.rings;
     const VectorVerification found = with_mesh();
-    EXPECT_EQ(found.open_chains, 1U);
-    EXPECT_EQ(found.misoriented, 1U);
+    EXPECT_EQ(found.findings.count(FindingKind::open_contours), 1U);
+    EXPECT_EQ(found.findings.count(FindingKind::misoriented_rings), 1U);
     EXPECT_FALSE(found.ok());
 }
 
 TEST_F(VerifyVectors, OfNoVectorsFails) {
     const VectorVerification nothing = verify_vectors({}, {.strategy = strategy_});
     EXPECT_FALSE(nothing.ok());
-    EXPECT_EQ(nothing.findings.size(), 1U);
+    EXPECT_EQ(nothing.findings.texts().size(), 1U);
     EXPECT_TRUE(verify_vectors({}).ok());
     for (LayerPart& part : parts_) {
         for (Layer& layer : part.layers)
@@ -153,23 +154,23 @@ TEST_F(VerifyVectors, OfNoVectorsFails) {
         part.hatches.clear();
     }
     EXPECT_FALSE(with_strategy().ok());
-    EXPECT_TRUE(with_strategy().none);
+    EXPECT_TRUE(with_strategy().findings.count(FindingKind::no_vectors) == 1);
 }
 
 TEST_F(VerifyVectors, SaysWhereNothingReportsTheMaterial) {
     std::erase_if(parts_, [](const LayerPart& part) { return part.exposure->kind == VectorKind::contour; });
     const VectorVerification found = with_nothing();
     EXPECT_TRUE(found.ok());
-    EXPECT_EQ(found.unbounded, found.hatch_vectors);
-    EXPECT_EQ(found.findings.size(), 1U);
-    EXPECT_EQ(with_all().unbounded, 0U);
-    EXPECT_EQ(with_all().outside, 0U);
-    EXPECT_EQ(with_all().unreached_layers, 10U) << "the edges";
+    EXPECT_EQ(found.findings.count(FindingKind::unbounded_vectors), found.hatch_vectors);
+    EXPECT_EQ(found.findings.texts().size(), 1U);
+    EXPECT_EQ(with_all().findings.count(FindingKind::unbounded_vectors), 0U);
+    EXPECT_EQ(number(with_all(), "outside"), 0U);
+    EXPECT_EQ(with_all().findings.count(FindingKind::unreached_layers), 10U) << "the edges";
 }
 
 TEST_F(VerifyVectors, FindsMaterialThatAMissingContourLeaves) {
     std::erase_if(parts_, [](const LayerPart& part) { return part.exposure->name() == "core contour 1"; });
-    EXPECT_EQ(with_all().unreached_layers, 10U);
+    EXPECT_EQ(with_all().findings.count(FindingKind::unreached_layers), 10U);
 }
 
 TEST_F(VerifyVectors, FindsLayersThatAreMissingInTheMiddle) {
@@ -180,7 +181,7 @@ TEST_F(VerifyVectors, FindsLayersThatAreMissingInTheMiddle) {
     const VectorVerification found = with_mesh();
     EXPECT_FALSE(found.ok());
     ASSERT_TRUE(found.heights);
-    EXPECT_EQ(found.heights->gaps, 1U);
+    EXPECT_EQ(found.findings.count(FindingKind::layer_gaps), 1U);
     EXPECT_TRUE(with_nothing().ok());
 }
 

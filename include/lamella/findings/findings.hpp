@@ -11,6 +11,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <variant>
 #include <vector>
 
 LAMELLA_API_BEGIN
@@ -18,9 +19,33 @@ namespace lamella {
 
 /// Kinds of findings, in the order in which they are reported. Each has a row in finding_kinds().
 enum class FindingKind : std::uint32_t {
-    open_chains,          ///< contours that do not close, in layers of a mesh
-    inverted_rings,       ///< rings that bound no material, in layers of a mesh
-    near_faces,           ///< horizontal faces that are on a plane except for rounding
+    open_chains,    ///< contours that do not close, in layers of a mesh
+    inverted_rings, ///< rings that bound no material, in layers of a mesh
+
+    // Found by checks of layers and scan vectors.
+    open_contours,         ///< contours that are not closed
+    contour_gaps,          ///< between the ends of these
+    crossings,             ///< pairs of segments that cross properly; touching is allowed
+    misoriented_rings,     ///< clockwise rings outside of material
+    tangled_rings,         ///< rings of positive area that bound no material
+    overlapping_rings,     ///< counter-clockwise rings within material: of overlapping bodies, or wrong holes
+    outside_vectors,       ///< vectors that leave the material
+    misplaced_vectors,     ///< vectors nearer to its edges than the strategy allows, or outside
+    short_lines,           ///< hatch lines below `shortest`
+    unreached_layers,      ///< planes with more material that no vector reaches than the strategy accepts
+    rings_without_vectors, ///< rings of the mesh's sections that bound no material (see inverted_rings)
+    no_vectors,            ///< there is a strategy but no vector
+    height_overlaps,       ///< layers that begin within the height of another one
+    unchecked_hatch_lines, ///< lines without scan vectors' contours, which are not checked
+    uncompared_layers,     ///< layers that are not compared with the mesh, because contours are open
+    other_areas,           ///< layers whose area differs from that of the mesh's section
+    displaced_layers,      ///< layers whose area agrees but whose centroid differs
+
+    near_faces, ///< horizontal faces that are on a plane except for rounding
+
+    layer_gaps,        ///< gaps between consecutive layers where the mesh has material
+    unbounded_vectors, ///< vectors whose material is unknown: neither a mesh nor a closed outer contour
+
     dropped_open_chains,  ///< contours of a slice file of which no scan vectors can be made
     reversible_rings,     ///< inverted rings of a slice file
     replaced_hatch_lines, ///< lines of a slice file that new ones replace
@@ -34,20 +59,24 @@ enum class FindingKind : std::uint32_t {
 enum class Severity : std::uint8_t {
     note,    ///< information; never an error
     warning, ///< an error with `strict`
+    defect,  ///< a check of layers or scan vectors fails
 };
 
 /// The cause of a finding. For defects of a mesh, programs refer to `lamella info`.
 enum class FindingOrigin : std::uint8_t {
-    mesh, ///< a defect of the mesh
-    job,  ///< an option of the job, or content of a slice file
+    mesh,              ///< a defect of the mesh
+    job,               ///< an option of the job, or content of a slice file
+    layers,            ///< found by the check of layers
+    vectors,           ///< found by the check of scan vectors
+    layers_or_vectors, ///< found by both checks
 };
 
 struct Finding;
 
 /// A row of the table of findings. Texts are templates of {fmt} with these fields: `{count}`, `{amount}`,
-/// `{largest}` (numbers of the finding), `{place}` (see Finding), `{where}` ("in 3 of 20 layers, first at z =
-/// 0.25 mm"), `{on_layers}` ("on 3 layers, the lowest at z = 0.25 mm"), `{layers}` ("20 layers": all of
-/// them),
+/// `{largest}` (numbers of the finding), `{or_more}` ("or more ..., " if Finding::or_more), `{place}` (see
+/// Finding), `{where}` ("in 3 of 20 layers, first at z = 0.25 mm"), `{on_layers}` ("on 3 layers, the lowest
+/// at z = 0.25 mm"), `{layers}` ("20 layers": all of them),
 /// `{affected}` (the number of layers with the finding), and `{cure}`, the text of the function `cure`.
 struct FindingDescription {
     FindingKind kind = {};
@@ -99,6 +128,7 @@ struct Finding {
     std::uint32_t file = 0;                ///< index of the input, or all_files
     std::vector<std::string> entries = {}; ///< if the file is an archive: its files with the finding
     std::uint64_t count = 0;
+    bool or_more = false;                ///< the search ended at this count
     double amount = 0;                   ///< in the unit of the kind
     double largest = 0;                  ///< mm
     std::uint64_t layers = 0;            ///< number of layers with the finding
@@ -124,6 +154,12 @@ struct PlaneHeight {
     double thickness = 0;
 };
 
+/// A number of findings and its key in JSON.
+struct FindingNumber {
+    const char* key = "";
+    std::variant<std::uint64_t, double> value; ///< a count or an amount
+};
+
 /// Findings of a job, or of a step of it, such as reading a file.
 struct Findings {
     std::vector<Finding> by_file; ///< by ascending kind, then file, then entries
@@ -134,8 +170,12 @@ struct Findings {
     [[nodiscard]] const Finding& of(FindingKind kind) const noexcept;
     /// Returns the finding of a kind in a file; its count is 0 if there is none.
     [[nodiscard]] const Finding& of(FindingKind kind, std::uint32_t file) const noexcept;
-    /// Returns the first finding that is an error with `strict`; null if there is none.
-    [[nodiscard]] const Finding* first_warning() const noexcept;
+    [[nodiscard]] std::uint64_t count(FindingKind kind) const noexcept { return of(kind).count; }
+    /// Returns the first finding that is at least as severe; null if there is none.
+    [[nodiscard]] const Finding* first(Severity least) const noexcept;
+    /// Returns the numbers of all kinds of a check, `layers` or `vectors`, that have keys, in the order of
+    /// the table. Kinds with the same key are added up; numbers of kinds that were not found are 0.
+    [[nodiscard]] std::vector<FindingNumber> numbers(FindingOrigin check) const;
     /// Returns a line for each finding, without the names of files.
     [[nodiscard]] std::vector<std::string> texts() const;
     /// Adds a finding, also to the total of its kind. If there is one of its kind, file and entries, the
@@ -143,12 +183,12 @@ struct Findings {
     void add(Finding finding);
     /// Adds the findings of other files, or of later layers or ranges.
     void add(const Findings& others);
-    /// Counts one finding of file 0. `place()`, the text Finding::place, is called only for the first of its
+    /// Counts findings of file 0. `place()`, the text Finding::place, is called only for the first of its
     /// kind.
     template <class Place>
-    void note(FindingKind kind, const Place& place) {
+    void note(FindingKind kind, const Place& place, std::uint64_t count = 1) {
         const bool first = of(kind, 0).count == 0;
-        add({.kind = kind, .count = 1, .place = first ? std::string(place()) : std::string()});
+        add({.kind = kind, .count = count, .place = first ? std::string(place()) : std::string()});
     }
 };
 

@@ -8,6 +8,7 @@
 #include "lamella/contour/open_gaps.hpp"
 #include "lamella/contour/rounding.hpp"
 #include "lamella/core/execution.hpp"
+#include "lamella/findings/findings.hpp"
 #include "lamella/pipeline/plate.hpp"
 #include "lamella/polygon/layer_steps.hpp"
 #include "lamella/read/layer_file.hpp"
@@ -17,7 +18,6 @@
 #include <cstdint>
 #include <optional>
 #include <span>
-#include <string>
 #include <vector>
 
 LAMELLA_API_BEGIN
@@ -78,8 +78,6 @@ struct CoveredHeights {
     double top = 0;    ///< of the last layer
     double mesh_bottom = 0;
     double mesh_top = 0;
-    std::uint64_t gaps = 0;         ///< number of gaps between consecutive layers where the mesh has material
-    double gaps_mm = 0;             ///< their sum
     std::uint64_t layers_above = 0; ///< layers that begin at the top of the mesh or higher
     std::uint64_t layers_below = 0; ///< layers that end at the bottom of the mesh or lower
 };
@@ -95,41 +93,21 @@ struct Verification {
     std::uint64_t layers = 0;
     std::uint64_t contours = 0;
     std::uint64_t points = 0;
-    std::uint64_t open_chains = 0;
     std::vector<OpenLayer> open_layers; ///< in the order of the layers
-    /// Pairs of segments that cross properly; touching is allowed.
-    std::uint64_t crossings = 0;
-    /// Number of rings that contradict their nesting: clockwise rings outside of material, and rings
-    /// directly within these.
-    std::uint64_t misoriented = 0;
-    /// Number of counter-clockwise rings within the material of other rings. Such rings are not an error,
-    /// because overlapping bodies have them; a hole with the wrong orientation looks the same.
-    std::uint64_t overlapping = 0;
-    double volume_mm3 = 0; ///< sum of area times thickness
+    double volume_mm3 = 0;              ///< sum of area times thickness
     /// Largest difference between the area of a layer without open chains and that of the mesh's section. Set
     /// with VerifyOptions::mesh if there is such a layer.
     std::optional<double> max_area_error_mm2;
-    /// True if each area agrees with that of the mesh's section. The tolerance is the perimeter times the
-    /// distance by which rounding and `simplify_mm` may have moved a point, plus the rounding of sums.
-    bool areas_agree = true;
-    /// Number of layers whose area agrees but whose centroid differs from that of the mesh's section; with
-    /// VerifyOptions::mesh. A layer that is rotated about its centroid is not detected.
-    std::uint64_t displaced = 0;
-    /// Number of layers that begin within the height of another one, so that material is built twice. Layers
-    /// with equal bottoms and tops do not count: they may belong to several parts.
-    std::uint64_t height_overlaps = 0;
     /// Set with VerifyOptions::mesh if there are layers. Layers that cover only a part of the mesh's height
     /// are not an error, but gaps between them are.
     std::optional<CoveredHeights> heights = {};
-    /// Number of hatch lines of the layers, which are not checked.
-    std::uint64_t hatches = 0;
-    /// One line for each kind of finding, with its first layer and location.
-    std::vector<std::string> findings;
+    /// Findings of FindingOrigin::layers and layers_or_vectors, and near_faces. The tolerance of areas is the
+    /// perimeter times the distance by which rounding and `simplify_mm` may have moved a point, plus the
+    /// rounding of sums. A layer that is rotated about its centroid is not detected. Layers with equal
+    /// bottoms and tops do not overlap: they may belong to several parts.
+    Findings findings;
 
-    [[nodiscard]] bool ok() const noexcept {
-        return open_chains == 0 && crossings == 0 && misoriented == 0 && areas_agree && displaced == 0 &&
-               height_overlaps == 0 && (!heights || heights->gaps == 0);
-    }
+    [[nodiscard]] bool ok() const noexcept { return findings.first(Severity::defect) == nullptr; }
 };
 
 /// Checks layers in any order. Parallel over layers, with the same result for any number of threads. Throws
@@ -146,39 +124,15 @@ struct VectorVerification {
     std::uint64_t layers = 0;
     std::uint64_t contour_vectors = 0;
     std::uint64_t hatch_vectors = 0;
-    // Checks of contours, each exposure by itself.
-    std::uint64_t open_chains = 0;
-    std::uint64_t crossings = 0;
-    /// Number of rings of wrong orientation (see Verification); if the number of the contour is known, also
-    /// of rings within material of their own exposure.
-    std::uint64_t misoriented = 0;
-    /// Number of vectors that leave the material, or are closer to its edges than the strategy allows.
-    std::uint64_t outside = 0;
-    std::uint64_t too_short = 0; ///< number of hatch lines below `shortest`
-    /// Number of planes of a part (with a mesh: of all parts together) with more material that no vector
-    /// reaches than the strategy accepts; and the unreached area of these planes. Without a mesh, material is
-    /// the area within the outermost contour.
-    std::uint64_t unreached_layers = 0;
-    double unreached_mm2 = 0;
-    /// With a mesh: number of rings of its sections that bound no material (see `inverted_rings`) and
-    /// therefore have no vectors; and the volume that they enclose.
-    std::uint64_t inverted_rings = 0;
-    double inverted_mm3 = 0;
-    std::uint64_t height_overlaps = 0; ///< see Verification
     /// See Verification::heights; set with a mesh if there are layers.
     std::optional<CoveredHeights> heights = {};
-    /// Number of vectors whose material is unknown, because there is neither a mesh nor a closed outer
-    /// contour.
-    std::uint64_t unbounded = 0;
-    bool none = false; ///< true if there is a strategy but no vector
-    /// One line for each kind of finding, with its first layer and location.
-    std::vector<std::string> findings;
+    /// Findings of FindingOrigin::vectors and layers_or_vectors. Contours are checked for each exposure by
+    /// itself. If the number of the contour is known, misoriented_rings also has rings within material of
+    /// their own exposure. The planes of unreached_layers are those of a part; with a mesh, those of all
+    /// parts together. Without a mesh, material is the area within the outermost contour.
+    Findings findings;
 
-    [[nodiscard]] bool ok() const noexcept {
-        return !none && open_chains == 0 && crossings == 0 && misoriented == 0 && outside == 0 &&
-               too_short == 0 && unreached_layers == 0 && inverted_rings == 0 && height_overlaps == 0 &&
-               (!heights || heights->gaps == 0);
-    }
+    [[nodiscard]] bool ok() const noexcept { return findings.first(Severity::defect) == nullptr; }
 };
 
 /// Checks the parts of a file that have an exposure, and ignores the others. If the layers are not in memory,
