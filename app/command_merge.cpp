@@ -39,7 +39,7 @@ int run_merge(const MergeArguments& arguments, const Context& context) {
         {.format = format.name, .writing = options, .reading = arguments.limits.of_layers()}, execution);
     for (const std::string& warning : result.file_warnings)
         context.messages.warn(warning);
-    context.messages.warn_of(output_name(arguments.output), result.warnings);
+    context.messages.warn_of(output_name(arguments.output), result.losses.texts());
     const std::string text =
         fmt::format("{}: {} from z = {} to {} mm, from {}, {}\n", one_line(output_name(arguments.output)),
                     counted(result.layers, "layer"), height(result.bottom), height(result.top),

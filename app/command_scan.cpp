@@ -114,7 +114,7 @@ int run_scan(const ScanCommandArguments& arguments, const Context& context) {
     const FileResult result =
         scan_layers(arguments.output, format, file, strategy, options, execution, max_memory);
     warn_about(file, result.findings.texts(), false, context.messages);
-    context.messages.warn_of(output_name(arguments.output), result.warnings);
+    context.messages.warn_of(output_name(arguments.output), result.losses.texts());
     after_output(arguments.output, [&] {
         if (arguments.stats.empty())
             return;

@@ -36,10 +36,10 @@ std::vector<std::string> run_warnings(const FileJob& job, const FileResult& resu
         const bool of_mesh = description(finding.kind).origin == FindingOrigin::mesh;
         add(input_name(path), finding.text() + (of_mesh ? ask_info(path) : std::string()));
     }
-    for (const std::string& warning : result.warnings)
-        add(output_name(job.output), warning);
-    for (const std::string& warning : result.report_warnings)
-        add(output_name(job.report.path), warning);
+    for (const std::string& text : result.losses.texts())
+        add(output_name(job.output), text);
+    for (const std::string& text : result.report_losses.texts())
+        add(output_name(job.report.path), text);
     return warnings;
 }
 

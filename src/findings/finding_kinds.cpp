@@ -269,6 +269,139 @@ constexpr std::array kinds{
         .many = "parts overlap in {amount:.4g} mm2 {on_layers}, where the material is exposed more "
                 "than once: move them apart, or unite them by `unite_parts`",
         .unit = "mm2"},
+    FindingDescription{.kind = FindingKind::rounded_points,
+                       .name = "rounded_points",
+                       .origin = FindingOrigin::output,
+                       .many = "rounding moved points by up to {largest:.3g} mm, merged {amount:.0f} of them "
+                               "with the one before, first in layer {first_layer}; a part nearer to the "
+                               "origin, or smaller units where the format has units, lose less"},
+    FindingDescription{.kind = FindingKind::vanished_contours,
+                       .name = "vanished_contours",
+                       .origin = FindingOrigin::output,
+                       .one = "rounding left out {count} contour, first in layer {first_layer}; a part "
+                              "nearer to the origin, or smaller units where the format has units, lose less",
+                       .many =
+                           "rounding left out {count} contours, first in layer {first_layer}; a part nearer "
+                           "to the origin, or smaller units where the format has units, lose less"},
+    FindingDescription{.kind = FindingKind::vanished_hatch_lines,
+                       .name = "vanished_hatch_lines",
+                       .origin = FindingOrigin::output,
+                       .one = "rounding left out {count} hatch line, first in layer {first_layer}; a part "
+                              "nearer to the origin, or smaller units where the format has units, lose less",
+                       .many =
+                           "rounding left out {count} hatch lines, first in layer {first_layer}; a part "
+                           "nearer to the origin, or smaller units where the format has units, lose less"},
+    FindingDescription{.kind = FindingKind::rounded_heights,
+                       .name = "rounded_heights",
+                       .origin = FindingOrigin::output,
+                       .many = "rounding moved heights of layers by up to {largest:.3g} mm, first in layer "
+                               "{first_layer}; smaller units lose less"},
+    FindingDescription{
+        .kind = FindingKind::unwritten_chains,
+        .name = "unwritten_chains",
+        .origin = FindingOrigin::output,
+        .one =
+            "{count} open contour was left out, the lowest at z = {z:.6g} mm: the format cannot store them",
+        .many = "{count} open contours were left out, the lowest at z = {z:.6g} mm: the format cannot store "
+                "them"},
+    FindingDescription{
+        .kind = FindingKind::unwritten_hatch_lines,
+        .name = "unwritten_hatch_lines",
+        .origin = FindingOrigin::output,
+        .one = "{count} hatch line was left out, the lowest at z = {z:.6g} mm: the format cannot store them",
+        .many =
+            "{count} hatch lines were left out, the lowest at z = {z:.6g} mm: the format cannot store them"},
+    FindingDescription{.kind = FindingKind::unwritten_gaps,
+                       .name = "unwritten_gaps",
+                       .origin = FindingOrigin::output,
+                       .one = "{count} gap or overlap of layers was left out, the lowest at z = {z:.6g} mm: "
+                              "the format cannot store them",
+                       .many = "{count} gaps or overlaps of layers were left out, the lowest at z = {z:.6g} "
+                               "mm: the format cannot store them"},
+    FindingDescription{.kind = FindingKind::changed_labels,
+                       .name = "changed_labels",
+                       .origin = FindingOrigin::output,
+                       .one = "{count} label was changed, {place}: the format has no place for some of its "
+                              "characters or for its length, or would take it for the label of scan vectors",
+                       .many =
+                           "{count} labels were changed, {place}: the format has no place for some of its "
+                           "characters or for its length, or would take it for the label of scan vectors"},
+    FindingDescription{
+        .kind = FindingKind::unwritten_labels,
+        .name = "unwritten_labels",
+        .origin = FindingOrigin::output,
+        .one = "{count} label was not written, the first \"{place}\": the format cannot hold labels",
+        .many = "{count} labels were not written, the first \"{place}\": the format cannot hold labels"},
+    FindingDescription{.kind = FindingKind::unmarked_supports,
+                       .name = "unmarked_supports",
+                       .origin = FindingOrigin::output,
+                       .one = "{count} part is a support: the format cannot hold that; 3mf has",
+                       .many = "{count} parts are supports: the format cannot hold that; 3mf has"},
+    FindingDescription{.kind = FindingKind::unwritten_parameters,
+                       .name = "unwritten_parameters",
+                       .origin = FindingOrigin::output,
+                       .one = "parameters of scan vectors, such as power and speed, were left out for "
+                              "{count} part: the format cannot store them; ilt, ovf and 3mf-toolpath can",
+                       .many = "parameters of scan vectors, such as power and speed, were left out for "
+                               "{count} parts: the format cannot store them; ilt, ovf and 3mf-toolpath can"},
+    FindingDescription{.kind = FindingKind::changed_parameters,
+                       .name = "changed_parameters",
+                       .origin = FindingOrigin::output,
+                       .one = "{place} were left out for {count} exposure: the format cannot store them",
+                       .many = "{place} were left out for {count} exposures: the format cannot store them"},
+    FindingDescription{.kind = FindingKind::unknown_parameters,
+                       .name = "unknown_parameters",
+                       .origin = FindingOrigin::output,
+                       .one = "{count} part has no parameters of scan vectors, such as power and speed, and "
+                              "was written without",
+                       .many = "{count} parts have no parameters of scan vectors, such as power and speed, "
+                               "and were written without"},
+    FindingDescription{.kind = FindingKind::unseen_material,
+                       .name = "unseen_material",
+                       .origin = FindingOrigin::output,
+                       .many = "{amount:.4g} mm2 of material {on_layers}, are too thin for the pixels and in "
+                               "no image; smaller pixels, more anti-aliasing or a positive offset show them",
+                       .unit = "mm2"},
+    FindingDescription{.kind = FindingKind::bottom_cuts,
+                       .name = "bottom_cuts",
+                       .origin = FindingOrigin::output,
+                       .one = "{count} layer was cut at the bottom, the lowest at z = {z:.6g} mm: the format "
+                              "cannot hold that, and readers take the middle; svg, json and npz have",
+                       .many =
+                           "{count} layers were cut at the bottom, the lowest at z = {z:.6g} mm: the format "
+                           "cannot hold that, and readers take the middle; svg, json and npz have"},
+    FindingDescription{.kind = FindingKind::top_cuts,
+                       .name = "top_cuts",
+                       .origin = FindingOrigin::output,
+                       .one = "{count} layer was cut at the top, the lowest at z = {z:.6g} mm: the format "
+                              "cannot hold that, and readers take the middle; svg, json and npz have",
+                       .many = "{count} layers were cut at the top, the lowest at z = {z:.6g} mm: the format "
+                               "cannot hold that, and readers take the middle; svg, json and npz have"},
+    FindingDescription{
+        .kind = FindingKind::other_cuts,
+        .name = "other_cuts",
+        .origin = FindingOrigin::output,
+        .one = "{count} layer was cut elsewhere than in the middle, the lowest at z = {z:.6g} mm: the format "
+               "cannot hold that, and readers take the middle; svg, json and npz have",
+        .many = "{count} layers were cut elsewhere than in the middle, the lowest at z = {z:.6g} mm: the "
+                "format cannot hold that, and readers take the middle; svg, json and npz have"},
+    FindingDescription{.kind = FindingKind::hidden_hatch_lines,
+                       .name = "hidden_hatch_lines",
+                       .origin = FindingOrigin::output,
+                       .many = "{count} of {layers} are shown without their hatches, so that the page stays "
+                               "small; figures are of all of them"},
+    FindingDescription{.kind = FindingKind::thinned_layers,
+                       .name = "thinned_layers",
+                       .origin = FindingOrigin::output,
+                       .many = "{count} of {layers} are shown thinned out, so that the page stays small: "
+                               "contours are up to {largest:.6g} mm off{place}, figures are of all of them"},
+    FindingDescription{.kind = FindingKind::flattened_triangles,
+                       .name = "flattened_triangles",
+                       .origin = FindingOrigin::output,
+                       .one = "{count} triangle loses its area or a corner where it is rounded to single "
+                              "precision, which STL has; .ply and .obj keep it",
+                       .many = "{count} triangles lose their area or a corner where it is rounded to single "
+                               "precision, which STL has; .ply and .obj keep it"},
 };
 
 } // namespace

@@ -41,9 +41,14 @@ auto key_of(const Finding& finding) {
 
 /// Adds the numbers of a later finding. Layers are counted by the caller, because files share planes.
 void add_numbers(Finding& sum, const Finding& later) {
-    sum.first_z = sum.count == 0 ? later.first_z : std::min(sum.first_z, later.first_z);
-    if (sum.count == 0)
+    if (sum.count == 0) {
+        sum.first_z = later.first_z;
+        sum.first_layer = later.first_layer;
         sum.place = later.place;
+    } else {
+        sum.first_z = std::min(sum.first_z, later.first_z);
+        sum.first_layer = std::min(sum.first_layer, later.first_layer);
+    }
     sum.count += later.count;
     sum.or_more = sum.or_more || later.or_more;
     sum.amount += later.amount;
@@ -112,6 +117,7 @@ std::string Finding::text() const {
     std::string text =
         fmt::format(fmt::runtime(words), fmt::arg("count", count), fmt::arg("amount", amount),
                     fmt::arg("largest", largest), fmt::arg("place", place),
+                    fmt::arg("first_layer", first_layer), fmt::arg("z", z),
                     fmt::arg("or_more", or_more ? "or more (rings of such a layer were not checked), " : ""),
                     fmt::arg("where", fmt::format("in {} of {}{}, first at z = {:.6g} mm", layers,
                                                   counted(of_layers, "layer"), of_parts(parts), z)),

@@ -382,7 +382,7 @@ FileResult FileSlicer::finish(JobOutput& output) {
     result_.processes = {figures_};
     if (output.has_page())
         try {
-            result_.report_warnings =
+            result_.report_losses =
                 output.finish_page(job_.report.notes ? job_.report.notes(result_) : PageNotes{});
         } catch (const Error& error) {
             if (job_.output.empty() || job_.output == "-")

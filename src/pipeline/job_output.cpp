@@ -48,13 +48,13 @@ void JobOutput::finish_file(FileResult& result) {
     writer_->finish();
     result.format = format_->name;
     result.bytes = writer_->bytes();
-    result.warnings = writer_->warnings();
+    result.losses = writer_->findings();
 }
 
-std::vector<std::string> JobOutput::finish_page(const PageNotes& notes) {
+Findings JobOutput::finish_page(const PageNotes& notes) {
     page_->add_notes(notes);
     page_->finish();
-    return page_->warnings();
+    return page_->findings();
 }
 
 } // namespace lamella

@@ -38,10 +38,10 @@ class JobOutput {
     [[nodiscard]] Commit prepare(std::span<const Layer> parts);
     [[nodiscard]] Commit prepare(const ScanVectors& vectors);
 
-    /// Ends the slice file, if there is one. Sets `format`, `bytes` and `warnings` of the result.
+    /// Ends the slice file, if there is one. Sets `format`, `bytes` and `losses` of the result.
     void finish_file(FileResult& result);
-    /// Ends the page with these notes, and returns the warnings of the page.
-    [[nodiscard]] std::vector<std::string> finish_page(const PageNotes& notes);
+    /// Ends the page with these notes, and returns its losses.
+    [[nodiscard]] Findings finish_page(const PageNotes& notes);
     [[nodiscard]] bool has_page() const noexcept { return page_ != nullptr; }
 
   private:

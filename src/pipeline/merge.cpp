@@ -466,7 +466,7 @@ void write_anew(const std::vector<ShardFile>& shards, const std::string& output,
     for (const ShardFile& shard : shards)
         for (const std::string& warning : shard.warnings)
             result.file_warnings.push_back(fmt::format("{}: {}", shard.path, warning));
-    result.warnings = writer->warnings();
+    result.losses = writer->findings();
 }
 
 } // namespace
@@ -485,7 +485,7 @@ MergeResult merge_layer_files(std::span<const std::string> paths, const std::str
                        .top = shards.back().top,
                        .bytes = 0,
                        .file_warnings = {},
-                       .warnings = {}};
+                       .losses = {}};
     for (const ShardFile& shard : shards)
         result.layers += shard.layers;
     const bool as_they_are = !writing.short_form && !has_gzip_extension(output) &&

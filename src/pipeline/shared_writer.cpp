@@ -4,12 +4,8 @@
 #include "system/file_chunk.hpp"
 #include "write/layer_writers.hpp"
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
 #include <algorithm>
 #include <filesystem>
-#include <sstream>
 #include <string_view>
 #include <system_error>
 #include <utility>
@@ -58,6 +54,57 @@ ScanVectors unpacked(Unpacker& unpacker) {
     for (std::uint64_t i = 0; i < hatches; ++i)
         vectors.hatches[i] = PointArray(unpacker.get_all<Point2>());
     return vectors;
+}
+
+void put(Packer& to, const std::string& text) {
+    to.put_all(std::span<const char>(text));
+}
+
+std::string get_text(Unpacker& from) {
+    const std::vector<char> text = from.get_all<char>();
+    return {text.begin(), text.end()};
+}
+
+/// Puts findings of one file, without labels of parts.
+void put(Packer& to, const Findings& findings) {
+    to.put(std::uint64_t{findings.by_file.size()});
+    for (const Finding& one : findings.by_file) {
+        to.put(one.kind).put(one.count).put(one.amount).put(one.largest);
+        to.put(one.layers).put(one.of_layers).put(one.first_z).put(one.first_layer);
+        put(to, one.place);
+        to.put(std::uint64_t{one.entries.size()});
+        for (const std::string& entry : one.entries)
+            put(to, entry);
+    }
+}
+
+Findings get_findings(Unpacker& from) {
+    Findings findings;
+    for (auto n = from.get<std::uint64_t>(); n > 0; --n) {
+        Finding one{.kind = from.get<FindingKind>()};
+        one.count = from.get<std::uint64_t>();
+        one.amount = from.get<double>();
+        one.largest = from.get<double>();
+        one.layers = from.get<std::uint64_t>();
+        one.of_layers = from.get<std::uint64_t>();
+        one.first_z = from.get<double>();
+        one.first_layer = from.get<std::uint64_t>();
+        one.place = get_text(from);
+        for (auto entries = from.get<std::uint64_t>(); entries > 0; --entries)
+            one.entries.push_back(get_text(from));
+        findings.add(std::move(one));
+    }
+    return findings;
+}
+
+WriteLosses get_losses(Unpacker& from) {
+    WriteLosses losses;
+    losses.layers = from.get<std::uint64_t>();
+    losses.first_z = from.get<double>();
+    losses.bottom = from.get<double>();
+    losses.top = from.get<double>();
+    losses.found = get_findings(from);
+    return losses;
 }
 
 /// Writes the bytes at offset `position` of an existing file; errors call it `name`.
@@ -122,17 +169,14 @@ void SharedWriter::finish() {
         write_chunks();
     else
         write_layers_of_others();
-    // Process 0 knows the warnings, and the size of a file that it has written alone.
-    const bool first = processes_.process() == 0;
-    const std::string text = first ? fmt::format("{}", fmt::join(writer_->warnings(), "\n")) : std::string();
-    const std::vector<std::string> all =
-        processes_.gather(Packer().put(bytes_).put_all(std::span<const char>(text)).take());
+    // Process 0 knows the losses, and the size of a file that it has written alone.
+    Packer mine;
+    mine.put(bytes_);
+    put(mine, processes_.process() == 0 ? writer_->findings() : Findings());
+    const std::vector<std::string> all = processes_.gather(mine.take());
     Unpacker from(all.front());
     bytes_ = from.get<std::uint64_t>();
-    const std::vector<char> received = from.get_all<char>();
-    std::istringstream lines(std::string(received.begin(), received.end()));
-    for (std::string warning; std::getline(lines, warning);)
-        warnings_.push_back(warning);
+    losses_ = get_findings(from);
     if (file_)
         file_->commit();
 }
@@ -168,18 +212,21 @@ void SharedWriter::write_chunks() {
     if (chunk_.layers > 0)
         writer_->finish();
     std::uint64_t position = 0;
-    const std::string mine = Packer().put(waiting_.size()).put(writer_->losses()).take();
-    const std::vector<std::string> all = processes_.gather(mine);
+    const WriteLosses losses = writer_->losses();
+    Packer mine;
+    mine.put(waiting_.size()).put(losses.layers).put(losses.first_z).put(losses.bottom).put(losses.top);
+    put(mine, losses.found);
+    const std::vector<std::string> all = processes_.gather(mine.take());
     for (std::size_t p = 0; p < all.size(); ++p) {
         Unpacker from(all[p]);
         if (p == processes_.process())
             position = bytes_;
         bytes_ += from.get<std::uint64_t>();
         if (processes_.process() == 0 && p > 0) // whose range is the first one
-            writer_->add_losses(from.get<WriteLosses>());
+            writer_->add_losses(get_losses(from));
     }
     if (strict_ && processes_.process() == 0)
-        check_warnings(path_, writer_->warnings());
+        check_strictly(path_, writer_->findings());
     check_bytes(path_, bytes_, most_bytes_);
     write_at(working_path_, position, waiting_, path_);
 }

@@ -36,7 +36,7 @@ class SharedWriter final : public LayerWriter {
     void finish() override;
     /// Returns the size of the whole file after `finish`.
     [[nodiscard]] std::uint64_t bytes() const noexcept override { return bytes_; }
-    [[nodiscard]] std::vector<std::string> warnings() const override { return warnings_; }
+    [[nodiscard]] Findings findings() const override { return losses_; }
 
   private:
     [[nodiscard]] Commit kept(std::string plane);
@@ -56,7 +56,7 @@ class SharedWriter final : public LayerWriter {
     ByteStore waiting_;                  ///< the range's bytes, or layers for process 0
     std::vector<std::uint64_t> batches_; ///< sizes of the messages to process 0
     std::uint64_t bytes_ = 0;
-    std::vector<std::string> warnings_;
+    Findings losses_;
 };
 
 } // namespace lamella

@@ -137,17 +137,21 @@ class IltWriter final : public OrderedWriter {
 
     std::uint64_t bytes() const noexcept override { return zip_.bytes() + waiting_; }
 
-    std::vector<std::string> warnings() const override {
-        std::vector<std::string> lines = OrderedWriter::warnings();
-        std::map<std::string, std::vector<std::string_view>> sections_by_line;
+    Findings findings() const override {
+        std::vector<Finding> of_entries; // each once, with the names of all entries that have it
         for (std::size_t i = 0; i < sections_.size(); ++i)
-            for (const std::string& line : entries_[i].writer->warnings())
-                sections_by_line[line].push_back(sections_[i].name);
-        for (const auto& [line, by] : sections_by_line)
-            lines.push_back(fmt::format(
-                "{}: {}{}", by.front(), line,
-                by.size() == 1 ? "" : fmt::format(" (and in {} more of its files)", by.size() - 1)));
-        return lines;
+            for (const Finding& finding : entries_[i].writer->findings().by_file) {
+                const auto same = std::find_if(of_entries.begin(), of_entries.end(), [&](Finding one) {
+                    one.entries.clear();
+                    return one == finding;
+                });
+                Finding& known = same != of_entries.end() ? *same : of_entries.emplace_back(finding);
+                known.entries.emplace_back(sections_[i].name);
+            }
+        Findings all = OrderedWriter::findings();
+        for (Finding& finding : of_entries)
+            all.add(std::move(finding));
+        return all;
     }
 
   private:

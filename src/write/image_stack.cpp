@@ -83,12 +83,6 @@ class ImageStackWriter final : public OrderedWriter {
             archive_.emplace(path, Overwriting::no, info.memory);
     }
 
-    std::vector<std::string> warnings() const override {
-        std::vector<std::string> lines = OrderedWriter::warnings();
-        for (std::string& line : unseen_.warnings())
-            lines.push_back(std::move(line));
-        return lines;
-    }
     std::uint64_t bytes() const noexcept override { return folder_ ? folder_->bytes() : archive_->bytes(); }
 
   private:
@@ -102,7 +96,7 @@ class ImageStackWriter final : public OrderedWriter {
                 archive_->add_ready(image_name(offset.index), ZipMethod::stored, image.in_zip(), image.file,
                                     after);
             manifest_.add(offset, image.areas.covered);
-            unseen_.add(offset.z, image.areas, display_.pixel_mm2());
+            add_loss(unseen_material(offset.z, image.areas, display_.pixel_mm2()));
         };
     }
 
@@ -119,7 +113,6 @@ class ImageStackWriter final : public OrderedWriter {
     Display display_;
     LayerImages images_;
     Manifest manifest_;
-    UnseenMaterial unseen_;
     std::optional<AtomicDirectory> folder_; ///< or archive_
     std::optional<ZipWriter> archive_;
 };

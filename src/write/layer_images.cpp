@@ -5,10 +5,7 @@
 
 #include "container/inflate.hpp"
 #include "contour/box2.hpp"
-#include "core/counted.hpp"
 #include "write/png.hpp"
-
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <cstddef>
@@ -40,21 +37,15 @@ Layer without_lone_holes(const Layer& layer) {
 
 } // namespace
 
-void UnseenMaterial::add(double z, const RasterAreas& areas, double pixel_mm2) noexcept {
-    if (areas.unseen <= 1 || areas.unseen <= 1e-3 * (areas.covered + areas.unseen))
-        return;
-    if (layers_++ == 0)
-        first_z_ = z;
-    area_mm2_ += areas.unseen * pixel_mm2;
-}
-
-std::vector<std::string> UnseenMaterial::warnings() const {
-    if (layers_ == 0)
-        return {};
-    return {fmt::format(
-        "{:.4g} mm2 of material on {}, the lowest at z = {:.6g} mm, are too thin for the pixels and in "
-        "no image; smaller pixels, more anti-aliasing or a positive offset show them",
-        area_mm2_, counted(layers_, "layer"), first_z_)};
+Finding unseen_material(double z, const RasterAreas& areas, double pixel_mm2) {
+    const bool seen = areas.unseen <= 1 || areas.unseen <= 1e-3 * (areas.covered + areas.unseen);
+    if (seen)
+        return {.kind = FindingKind::unseen_material};
+    return {.kind = FindingKind::unseen_material,
+            .count = 1,
+            .amount = areas.unseen * pixel_mm2,
+            .layers = 1,
+            .first_z = z};
 }
 
 // Draws an empty image so that impossible options are reported before the first layer.

@@ -3,6 +3,7 @@
 // Layers as PNG files, in memory.
 
 #include "lamella/contour/layer.hpp"
+#include "lamella/findings/findings.hpp"
 #include "lamella/raster/image.hpp"
 
 #include "container/zip_writer.hpp"
@@ -11,8 +12,6 @@
 #include <cstdint>
 #include <memory>
 #include <span>
-#include <string>
-#include <vector>
 
 namespace lamella {
 
@@ -24,20 +23,10 @@ struct LayerImage {
     [[nodiscard]] ZipChunk in_zip() const { return {file->view(), file->view().size(), crc}; }
 };
 
-/// Material that images do not show because it is too thin for their pixels.
-class UnseenMaterial {
-  public:
-    /// Adds the areas of the image of a layer at z. Corners and the edges of bodies lose a little everywhere,
-    /// so a layer counts if it loses more than a thousandth of its area, and more than a pixel.
-    void add(double z, const RasterAreas& areas, double pixel_mm2) noexcept;
-    /// Returns a line, or none if nothing is lost.
-    [[nodiscard]] std::vector<std::string> warnings() const;
-
-  private:
-    std::uint64_t layers_ = 0;
-    double first_z_ = 0;
-    double area_mm2_ = 0;
-};
+/// Returns the material that the image of a layer at z does not show because it is too thin for the pixels.
+/// Corners and the edges of bodies lose a little everywhere, so the count is 0 unless the layer loses more
+/// than a thousandth of its area, and more than a pixel.
+[[nodiscard]] Finding unseen_material(double z, const RasterAreas& areas, double pixel_mm2);
 
 /// Makes images with the same grid and options. May be used by any number of threads at once.
 class LayerImages {

@@ -348,20 +348,20 @@ class PageWriter final : public LayerPageWriter {
 
     [[nodiscard]] std::uint64_t bytes() const noexcept override { return file_.bytes(); }
 
-    [[nodiscard]] std::vector<std::string> warnings() const override {
-        std::vector<std::string> lines;
+    [[nodiscard]] Findings findings() const override {
+        Findings found;
         if (without_hatches_ > 0)
-            lines.push_back(
-                fmt::format("{} of {} layers are shown without their hatches, so that the page stays "
-                            "small; figures are of all of them",
-                            without_hatches_, order_.count()));
+            found.add({.kind = FindingKind::hidden_hatch_lines,
+                       .count = without_hatches_,
+                       .of_layers = order_.count()});
         if (thinned_ > 0)
-            lines.push_back(fmt::format(
-                "{} of {} layers are shown thinned out, so that the page stays small: contours are up to "
-                "{:.6g} mm off{}, figures are of all of them",
-                thinned_, order_.count(), largest_tolerance_mm_,
-                not_shown_ > 0 ? fmt::format(" and {} small ones are not shown", not_shown_) : ""));
-        return lines;
+            found.add({.kind = FindingKind::thinned_layers,
+                       .count = thinned_,
+                       .largest = largest_tolerance_mm_,
+                       .of_layers = order_.count(),
+                       .place = not_shown_ > 0 ? fmt::format(" and {} small ones are not shown", not_shown_)
+                                               : std::string()});
+        return found;
     }
 
   private:

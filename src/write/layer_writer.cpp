@@ -175,16 +175,6 @@ constexpr std::array formats{
                 .exposure = true},
 };
 
-/// Returns the names of the formats that keep the heights of cuts and can be read, such as "json, npz and
-/// svg".
-std::string names_of_exact() {
-    std::vector<std::string_view> texts;
-    for (const LayerFormat& format : formats)
-        if (format.cuts && !format.one_way)
-            texts.push_back(format.name);
-    return fmt::format("{} and {}", fmt::join(texts.begin(), texts.end() - 1, ", "), texts.back());
-}
-
 std::string names() {
     std::vector<std::string> texts;
     for (const LayerFormat& format : formats)
@@ -217,24 +207,9 @@ void check_info(const LayerFileInfo& info) {
                     "a slice file needs the box of its part, and that is empty or not finite");
 }
 
-/// Returns a warning about layers that were not cut at mid-height, if there are any, for a format that cannot
-/// keep cuts.
-std::vector<std::string> warnings_of_cuts(const WriteLosses& losses) {
-    const std::uint64_t all = losses.cuts.count;
-    if (all == 0)
-        return {};
-    return {fmt::format("{} cut {}, the lowest at z = {:.6g} mm: the format cannot hold that, and readers "
-                        "take the middle; {} have",
-                        counted(all, "layer was", "layers were"),
-                        losses.top_cuts == all      ? "at the top"
-                        : losses.bottom_cuts == all ? "at the bottom"
-                                                    : "elsewhere than in the middle",
-                        losses.cuts.z, names_of_exact())};
-}
-
 /// Enforces LayerWriteOptions::most_bytes and `strict` on another writer. Throws after the layer that exceeds
-/// the limit; throws in `finish`, before the file has its name, if there are warnings. Adds the warning that
-/// follows from the table of formats.
+/// the limit; throws in `finish`, before the file has its name, if there are findings. Adds the cuts that
+/// are lost by the table of formats.
 class LimitedWriter final : public LayerWriter {
   public:
     LimitedWriter(std::unique_ptr<LayerWriter> writer, std::string path, const LayerFormat& format,
@@ -248,18 +223,19 @@ class LimitedWriter final : public LayerWriter {
 
     void finish() override {
         if (strict_)
-            check_warnings(path_, warnings());
+            check_strictly(path_, findings());
         check_bytes(path_, bytes(), most_bytes_);
         writer_->finish();
     }
 
     std::uint64_t bytes() const noexcept override { return writer_->bytes(); }
-    std::vector<std::string> warnings() const override {
-        std::vector<std::string> lines = writer_->warnings();
+    Findings findings() const override {
+        Findings found = writer_->findings();
         if (!keeps_cuts_)
-            for (std::string& line : warnings_of_cuts(losses()))
-                lines.push_back(std::move(line));
-        return lines;
+            for (const Finding& finding : losses().found.by_file)
+                if (is_cut(finding.kind))
+                    found.add(finding);
+        return found;
     }
     WriteLosses losses() const override { return writer_->losses(); }
     void add_losses(const WriteLosses& above) override { writer_->add_losses(above); }
@@ -290,9 +266,9 @@ void check_bytes(const std::string& path, std::uint64_t bytes, std::uint64_t mos
                         name_of_output(path), most));
 }
 
-void check_warnings(const std::string& path, const std::vector<std::string>& warnings) {
-    if (!warnings.empty())
-        throw Error(ErrorKind::defect, fmt::format("{}: {}", name_of_output(path), warnings.front()));
+void check_strictly(const std::string& path, const Findings& findings) {
+    if (const Finding* const found = findings.first(Severity::warning); found != nullptr)
+        throw Error(ErrorKind::defect, fmt::format("{}: {}", name_of_output(path), found->text()));
 }
 
 Box3 part_box(std::span<const Layer> layers, std::span<const PointArray> hatches,

@@ -55,7 +55,7 @@ OpenLayerWriter open_toolpath_3mf;
 /// Throws Error{limit} if a file takes more than LayerWriteOptions::most_bytes.
 void check_bytes(const std::string& path, std::uint64_t bytes, std::uint64_t most);
 
-/// Throws Error{defect}, with the first warning, if there are any (LayerWriteOptions::strict).
-void check_warnings(const std::string& path, const std::vector<std::string>& warnings);
+/// Throws Error{defect}, with the first finding, if there are any (LayerWriteOptions::strict).
+void check_strictly(const std::string& path, const Findings& findings);
 
 } // namespace lamella

@@ -4,13 +4,11 @@
 
 #include "container/text_position.hpp"
 #include "contour/same_height.hpp"
-#include "core/counted.hpp"
 
 #include <fmt/format.h>
 
-#include <cassert>
 #include <cmath>
-#include <utility>
+#include <cstdint>
 
 namespace lamella {
 
@@ -33,6 +31,11 @@ bool loses_a_choice(const ParameterSet& set, const ParameterSet& kept) noexcept 
 
 } // namespace
 
+bool is_cut(FindingKind kind) noexcept {
+    return kind == FindingKind::bottom_cuts || kind == FindingKind::top_cuts ||
+           kind == FindingKind::other_cuts;
+}
+
 std::string label_in_file(const PartInfo& part, const Holds& holds) {
     const auto written = [&](std::string_view label) {
         return holds.written_label != nullptr ? holds.written_label(label) : std::string(label);
@@ -51,40 +54,33 @@ std::string label_in_file(const PartInfo& part, const Holds& holds) {
 
 LeftOut::LeftOut(Holds holds, std::span<const PartInfo> parts) : holds_(holds) {
     for (const PartInfo& part : parts) {
+        const auto none = [] {
+            return "";
+        };
         const bool known = part.exposure && !(part.exposure->parameters == unknown_parameters());
-        ++(known ? known_ : unknown_);
+        if (known != holds.parameters)
+            parts_.note(known ? FindingKind::unwritten_parameters : FindingKind::unknown_parameters, none);
         if (known && holds.kept != nullptr &&
             loses_a_choice(part.exposure->parameters, holds.kept(part.exposure->parameters)))
-            ++changed_parts_;
-        if (part.support && !part.exposure)
-            ++supports_;
-        if (part.label != PartInfo{}.label && labelled_++ == 0)
-            first_labelled_ = part.label;
-        if (std::string written = label_in_file(part, holds);
-            written != part.label && changed_labels_++ == 0) {
-            first_label_ = part.label;
-            first_written_ = std::move(written);
-        }
+            parts_.note(FindingKind::changed_parameters, [&] { return holds.not_kept; });
+        if (part.support && !part.exposure && !holds.supports)
+            parts_.note(FindingKind::unmarked_supports, none);
+        if (part.label != PartInfo{}.label && !holds.labels)
+            parts_.note(FindingKind::unwritten_labels, [&] { return printable(part.label, longest_label); });
+        if (const std::string written = label_in_file(part, holds); written != part.label)
+            parts_.note(FindingKind::changed_labels, [&] {
+                const std::string from = printable(part.label, longest_label);
+                const std::string to = printable(written, longest_label);
+                return from != to ? fmt::format("the first from \"{}\" to \"{}\"", from, to)
+                                  : fmt::format("the first reads \"{}\" now", to);
+            });
     }
-    assert(known_ + unknown_ == parts.size());
 }
 
-void WriteLosses::Kind::add(const Kind& above) noexcept {
-    if (count == 0)
-        z = above.z;
-    count += above.count;
-}
-
-void WriteLosses::add(const WriteLosses& above) noexcept {
-    open_chains.add(above.open_chains);
-    hatches.add(above.hatches);
+void WriteLosses::add(const WriteLosses& above) {
     if (layers > 0 && above.layers > 0 && std::abs(above.bottom - top) > same_height_mm)
-        gaps.add({1, above.first_z});
-    gaps.add(above.gaps);
-    cuts.add(above.cuts);
-    bottom_cuts += above.bottom_cuts;
-    top_cuts += above.top_cuts;
-    rounded.add(above.rounded);
+        found.add({.kind = FindingKind::unwritten_gaps, .count = 1, .first_z = above.first_z});
+    found.add(above.found);
     if (above.layers == 0)
         return;
     if (layers == 0) {
@@ -98,81 +94,54 @@ void WriteLosses::add(const WriteLosses& above) noexcept {
 WriteLosses losses_of_plane(const PlaneView& view) {
     const Layer& plane = view.layers.front();
     WriteLosses losses;
-    for (WriteLosses::Kind* kind : {&losses.open_chains, &losses.hatches, &losses.gaps, &losses.cuts})
-        kind->z = plane.z;
+    const auto add = [&](FindingKind kind, std::uint64_t count) {
+        if (count > 0)
+            losses.found.add({.kind = kind, .count = count, .first_z = plane.z});
+    };
     losses.layers = 1;
     losses.first_z = plane.z;
     losses.bottom = plane.bottom;
     losses.top = plane.top;
     for (const Layer& layer : view.layers)
-        losses.open_chains.count += layer.open_chains();
+        add(FindingKind::unwritten_chains, layer.open_chains());
     for (const PointArray& hatches : view.hatches)
-        losses.hatches.count += hatches.size() / 2;
+        add(FindingKind::unwritten_hatch_lines, hatches.size() / 2);
     const auto is_at = [&](double z) {
         return std::abs(plane.z - z) <= same_height_mm;
     };
-    if (!is_at(plane.bottom + (plane.top - plane.bottom) / 2)) {
-        losses.cuts.count = 1;
-        losses.bottom_cuts = is_at(plane.bottom) ? 1 : 0;
-        losses.top_cuts = is_at(plane.top) ? 1 : 0;
-    }
+    if (!is_at(plane.bottom + (plane.top - plane.bottom) / 2))
+        add(is_at(plane.bottom) ? FindingKind::bottom_cuts
+            : is_at(plane.top)  ? FindingKind::top_cuts
+                                : FindingKind::other_cuts,
+            1);
     return losses;
-}
-
-void LeftOut::add(const WriteLosses& above) {
-    WriteLosses planes = above;
-    rounding_.add(std::exchange(planes.rounded, {}));
-    losses_.add(planes);
 }
 
 WriteLosses LeftOut::losses() const {
     WriteLosses losses = losses_;
-    losses.rounded = rounding_.losses();
+    losses.found.add(rounding_.findings());
     return losses;
 }
 
-std::vector<std::string> LeftOut::warnings() const {
-    std::vector<std::string> lines = rounding_.warnings();
-    const auto say = [&](bool held, const WriteLosses::Kind& extras, const char* one, const char* many) {
-        if (!held && extras.count != 0)
-            lines.push_back(fmt::format("{} {} left out, the lowest at z = {:.6g} mm: the format cannot "
-                                        "store them",
-                                        extras.count, extras.count == 1 ? one : many, extras.z));
-    };
-    say(holds_.open_chains, losses_.open_chains, "open contour was", "open contours were");
-    say(holds_.hatches, losses_.hatches, "hatch line was", "hatch lines were");
-    say(holds_.gaps, losses_.gaps, "gap or overlap of layers was", "gaps or overlaps of layers were");
-    if (changed_labels_ != 0) {
-        const std::string from = printable(first_label_, longest_label);
-        const std::string to = printable(first_written_, longest_label);
-        lines.push_back(
-            fmt::format("{} changed, {}: the format has no place for some of its characters or for "
-                        "its length, or would take it for the label of scan vectors",
-                        counted(changed_labels_, "label was", "labels were"),
-                        from != to ? fmt::format("the first from \"{}\" to \"{}\"", from, to)
-                                   : fmt::format("the first reads \"{}\" now", to)));
+bool LeftOut::holds(FindingKind kind) const noexcept {
+    switch (kind) {
+    case FindingKind::unwritten_chains:
+        return holds_.open_chains;
+    case FindingKind::unwritten_hatch_lines:
+        return holds_.hatches;
+    case FindingKind::unwritten_gaps:
+        return holds_.gaps;
+    default:
+        return is_cut(kind);
     }
-    if (!holds_.labels && labelled_ != 0)
-        lines.push_back(fmt::format("{} not written, the first \"{}\": the format cannot hold labels",
-                                    counted(labelled_, "label was", "labels were"),
-                                    printable(first_labelled_, longest_label)));
-    if (!holds_.supports && supports_ != 0)
-        lines.push_back(fmt::format("{}: the format cannot hold that; 3mf has",
-                                    counted(supports_, "part is a support", "parts are supports")));
-    if (!holds_.parameters && known_ != 0)
-        lines.push_back(fmt::format(
-            "parameters of scan vectors, such as power and speed, were left out for {}: the format cannot "
-            "store them; ilt, ovf and 3mf-toolpath can",
-            counted(known_, "part")));
-    if (changed_parts_ != 0)
-        lines.push_back(fmt::format("{} were left out for {}: the format cannot store them", holds_.not_kept,
-                                    counted(changed_parts_, "exposure")));
-    if (holds_.parameters && unknown_ != 0)
-        lines.push_back(counted(
-            unknown_,
-            "part has no parameters of scan vectors, such as power and speed, and was written without",
-            "parts have no parameters of scan vectors, such as power and speed, and were written without"));
-    return lines;
+}
+
+Findings LeftOut::findings() const {
+    Findings lost = parts_;
+    for (const Finding& finding : losses().found.by_file)
+        if (!holds(finding.kind))
+            lost.add(finding);
+    return lost;
 }
 
 } // namespace lamella

@@ -1,6 +1,6 @@
 #pragma once
 
-// Warnings about content that a format cannot hold.
+// Findings of content that a format cannot hold.
 
 #include "lamella/contour/layer.hpp"
 #include "lamella/write/layer_writer.hpp"
@@ -8,11 +8,10 @@
 #include "write/plane_view.hpp"
 #include "write/rounding_loss.hpp"
 
-#include <cstdint>
 #include <span>
 #include <string>
 #include <string_view>
-#include <vector>
+#include <utility>
 
 namespace lamella {
 
@@ -36,12 +35,15 @@ struct Holds {
     std::string_view not_kept = {};
 };
 
+/// Returns whether findings of the kind are layers that were not cut at mid-height.
+[[nodiscard]] bool is_cut(FindingKind kind) noexcept;
+
 /// Returns the label of a part as the file has it. A label never changes what the part is: the label of
 /// contours gets a further word if it would be that of an exposure, and a long label of an exposure keeps its
 /// end.
 [[nodiscard]] std::string label_in_file(const PartInfo& part, const Holds& holds);
 
-/// Returns counts of the content of a plane that some formats cannot hold, except gaps and rounding.
+/// Returns the content of a plane that some formats cannot hold, except gaps and rounding.
 [[nodiscard]] WriteLosses losses_of_plane(const PlaneView& plane);
 
 /// Counts content that a file leaves out. Planes must be added in ascending z.
@@ -50,26 +52,26 @@ class LeftOut {
     LeftOut(Holds holds, std::span<const PartInfo> parts);
 
     /// Adds the losses of a plane or of a range of planes.
-    void add(const WriteLosses& above);
+    void add(const WriteLosses& above) { losses_.add(above); }
+    /// Adds a loss of the next plane that only the format has, unless its count is 0.
+    void add(Finding loss) {
+        if (loss.count > 0)
+            losses_.found.add(std::move(loss));
+    }
     [[nodiscard]] WriteLosses losses() const;
     /// Returns the counter for writers that round.
     [[nodiscard]] RoundingLoss& rounding() noexcept { return rounding_; }
-    /// Returns one line for each kind.
-    [[nodiscard]] std::vector<std::string> warnings() const;
+    /// Returns what the format cannot hold, except cuts, which are in its row of the table of formats.
+    [[nodiscard]] Findings findings() const;
 
   private:
+    /// Returns whether the format can hold content of this kind.
+    [[nodiscard]] bool holds(FindingKind kind) const noexcept;
+
     Holds holds_;
-    std::uint64_t known_ = 0;         ///< parts with parameters of scan vectors
-    std::uint64_t unknown_ = 0;       ///< parts without parameters of scan vectors
-    std::uint64_t supports_ = 0;      ///< support parts that are not marked otherwise
-    std::uint64_t labelled_ = 0;      ///< parts whose labels differ from the default
-    std::string first_labelled_;      ///< first label of these
-    std::uint64_t changed_parts_ = 0; ///< parts that lose a parameter that differs from its default
-    WriteLosses losses_;              ///< of all planes, except by rounding
+    Findings parts_;     ///< losses of the parts
+    WriteLosses losses_; ///< of all planes, except by rounding
     RoundingLoss rounding_;
-    std::uint64_t changed_labels_ = 0;
-    std::string first_label_; ///< first changed label, and its text in the file
-    std::string first_written_;
 };
 
 } // namespace lamella

@@ -7,6 +7,7 @@
 #include "system/atomic_file.hpp"
 #include "write/byte_buffer.hpp"
 #include "write/decimal.hpp"
+#include "write/layer_writers.hpp"
 
 #include <fmt/format.h>
 
@@ -187,17 +188,13 @@ std::vector<std::string> write_stl(const std::string& path, const Mesh& mesh, bo
         }
         writer.append(TriangleSoup(std::move(triangles)));
     }
-    std::vector<std::string> warnings;
+    Findings findings;
     if (lost > 0)
-        warnings.push_back(fmt::format("{} where it is rounded to single precision, which STL has; .ply and "
-                                       ".obj keep it",
-                                       lost == 1
-                                           ? "1 triangle loses its area or a corner"
-                                           : fmt::format("{} triangles lose their area or a corner", lost)));
-    if (strict && !warnings.empty())
-        throw Error(ErrorKind::defect, fmt::format("{}: {}", name_of_output(path), warnings.front()));
+        findings.add({.kind = FindingKind::flattened_triangles, .count = lost});
+    if (strict)
+        check_strictly(path, findings);
     writer.finish();
-    return warnings;
+    return findings.texts();
 }
 
 void write_stl_ascii(const std::string& path, const TriangleSoup& soup, const std::string& name) {

@@ -12,8 +12,7 @@
 #include <functional>
 #include <memory>
 #include <span>
-#include <string>
-#include <vector>
+#include <utility>
 
 namespace lamella {
 
@@ -75,7 +74,7 @@ class OrderedWriter : public LayerWriter {
     [[nodiscard]] Commit prepare(std::span<const Layer> parts) final;
     [[nodiscard]] Commit prepare(const ScanVectors& vectors) final;
     void finish() final;
-    [[nodiscard]] std::vector<std::string> warnings() const override { return left_out_.warnings(); }
+    [[nodiscard]] Findings findings() const override { return left_out_.findings(); }
     [[nodiscard]] WriteLosses losses() const final { return left_out_.losses(); }
     void add_losses(const WriteLosses& above) final { left_out_.add(above); }
 
@@ -92,6 +91,8 @@ class OrderedWriter : public LayerWriter {
     /// Ends the file and gives it its name. Called once, after the last plane.
     virtual void end_file() = 0;
 
+    /// Adds a loss of a plane that only the format has; called in order.
+    void add_loss(Finding loss) { left_out_.add(std::move(loss)); }
     /// Returns the counter of losses by rounding.
     [[nodiscard]] RoundingLoss& rounding_loss() noexcept { return left_out_.rounding(); }
     [[nodiscard]] std::shared_ptr<ByteBuffer> buffer() { return buffers_->take(); }

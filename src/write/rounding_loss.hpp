@@ -1,15 +1,13 @@
 #pragma once
 
-// Losses of contours by rounding that are worth a warning.
+// Losses of contours by rounding that are worth a finding.
 
-#include "lamella/write/layer_writer.hpp"
+#include "lamella/findings/findings.hpp"
 
 #include <cstddef>
 #include <cstdint>
 #include <mutex>
 #include <span>
-#include <string>
-#include <vector>
 
 namespace lamella {
 
@@ -38,7 +36,7 @@ template <class Point>
 /// Counts the losses of a file by rounding.
 class RoundingLoss {
   public:
-    /// Callers need not count moves and merged points if rounding moves no point by more than this. It is
+    /// Moves and merged points of a contour do not count if rounding moves no point by more than this. It is
     /// half a unit of the coarsest files that machines commonly accept. Lost contours and lines are always
     /// counted.
     static constexpr double unnoticed_mm = 0.01;
@@ -46,14 +44,12 @@ class RoundingLoss {
     /// May be called from any threads, for layers in any order.
     void add(const RoundedContour& contour, std::uint64_t layer);
     void add_height(double moved_mm, std::uint64_t layer);
-    void add(const WriteLosses::Rounded& other);
-    [[nodiscard]] WriteLosses::Rounded losses() const;
-    /// Returns at most one line for contours and one for heights.
-    [[nodiscard]] std::vector<std::string> warnings() const;
+    /// Returns what was added, the same for any order.
+    [[nodiscard]] Findings findings() const;
 
   private:
     mutable std::mutex mutex_;
-    WriteLosses::Rounded losses_;
+    Findings found_;
 };
 
 } // namespace lamella

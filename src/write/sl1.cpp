@@ -113,12 +113,6 @@ class Sl1Writer final : public OrderedWriter {
           fade_layers_(options.exposure.fade_layers), created_(time_text(options.exposure.created_s)),
           job_(job_name(info.memory == nullptr ? path : "")), archive_(path, Overwriting::no, info.memory) {}
 
-    std::vector<std::string> warnings() const override {
-        std::vector<std::string> lines = OrderedWriter::warnings();
-        for (std::string& line : unseen_.warnings())
-            lines.push_back(std::move(line));
-        return lines;
-    }
     std::uint64_t bytes() const noexcept override { return archive_.bytes(); }
 
   private:
@@ -127,7 +121,7 @@ class Sl1Writer final : public OrderedWriter {
                 seen = relief_.spans(plane.layers)](const PlanePosition& offset, Completions& after) {
             relief_.add(seen);
             count(offset, image.areas.covered * display_.pixel_mm2());
-            unseen_.add(offset.z, image.areas, display_.pixel_mm2());
+            add_loss(unseen_material(offset.z, image.areas, display_.pixel_mm2()));
             archive_.add_ready(fmt::format("{}{:05}.png", job_, offset.position), ZipMethod::stored,
                                image.in_zip(), image.file, after);
         };
@@ -235,7 +229,6 @@ class Sl1Writer final : public OrderedWriter {
     ImagePrinter printer_;
     Display display_;
     LayerImages images_;
-    UnseenMaterial unseen_;
     Relief relief_;
     double normal_s_;
     double first_s_;

@@ -60,7 +60,7 @@ inline void expect_same(const FileResult& one, const FileResult& other) {
     EXPECT_EQ(one.bottom, other.bottom);
     EXPECT_EQ(one.top, other.top);
     EXPECT_EQ(one.bytes, other.bytes);
-    EXPECT_EQ(one.warnings, other.warnings);
+    EXPECT_EQ(one.losses.by_file, other.losses.by_file);
     for (std::uint64_t SliceReport::*count :
          {&SliceReport::layers, &SliceReport::contours, &SliceReport::open_chains, &SliceReport::points})
         EXPECT_EQ(one.report.*count, other.report.*count);

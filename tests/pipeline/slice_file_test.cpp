@@ -234,11 +234,11 @@ TEST_F(Processes, CountTheLossesOfAFormatTogether) {
         job.format = name;
         job.output = path("out");
         const FileResult one = slice_file(job);
-        EXPECT_FALSE(one.warnings.empty()) << name;
+        EXPECT_FALSE(one.losses.empty()) << name;
         for (const std::size_t processes : {2, 3, 50}) {
             SCOPED_TRACE(testing::Message() << name << " by " << processes);
             for (const FileResult& many : test::slice_by(processes, job))
-                EXPECT_EQ(many.warnings, one.warnings);
+                EXPECT_EQ(many.losses.by_file, one.losses.by_file);
         }
     }
     job.format = "cli";

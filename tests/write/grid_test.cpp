@@ -54,16 +54,18 @@ TEST(WriterGrid, CountsWhatACoarseStepLoses) {
         const std::vector<Point2> large{{0, 0}, {5, 0}, {5.04, 0}, {5, 5}};
         static_cast<void>(grid.snap(large, true, 12, 3, scratch));
         static_cast<void>(grid.snap(small, true, 1, 4, scratch));
-        return loss.warnings();
+        return loss.findings().texts();
     };
     EXPECT_TRUE(warnings(0.001).empty());
     EXPECT_EQ(warnings(0.02),
               (std::vector<std::string>{"rounding left out 1 contour, first in layer 4; a part nearer to the "
                                         "origin, or smaller units where the format has units, lose less"}));
     EXPECT_EQ(warnings(0.1), (std::vector<std::string>{
-                                 "rounding moved points by up to 0.04 mm, merged 3 of them with the one "
-                                 "before and left out 1 contour, first in layer 3; a part nearer to "
-                                 "the origin, or smaller units where the format has units, lose less"}));
+                                 "rounding moved points by up to 0.04 mm, merged 1 of them with the one "
+                                 "before, first in layer 3; a part nearer to the origin, or smaller units "
+                                 "where the format has units, lose less",
+                                 "rounding left out 1 contour, first in layer 4; a part nearer to the "
+                                 "origin, or smaller units where the format has units, lose less"}));
 }
 
 TEST(WriterGrid, SaysNothingWhereACoarseStepLosesNothing) {
@@ -73,7 +75,7 @@ TEST(WriterGrid, SaysNothingWhereACoarseStepLosesNothing) {
     static_cast<void>(grid.snap(std::vector<Point2>{{0, 0}, {5, 0}, {5, 5}}, true, 12.5, 0, scratch));
     static_cast<void>(grid.snap(std::vector<Point2>{{0, 0}, {5.001, 0}, {5, 5}}, true, 12.5, 0, scratch));
     static_cast<void>(grid.snap_lines(std::vector<Point2>{{0, 0}, {5, 0}}, 0));
-    EXPECT_TRUE(loss.warnings().empty());
+    EXPECT_TRUE(loss.findings().texts().empty());
 }
 
 TEST(WriterGrid, LeavesOutAndCountsLinesThatShrinkToAPoint) {
@@ -81,9 +83,9 @@ TEST(WriterGrid, LeavesOutAndCountsLinesThatShrinkToAPoint) {
     const WriterGrid grid(0.001, &loss);
     EXPECT_EQ(grid.snap_lines(std::vector<Point2>{{0, 0}, {1e-4, 0}, {1, 0}, {1, 2}, {3, 3}, {3, 3.0001}}, 6),
               (std::vector<GridPoint>{{1000, 0}, {1000, 2000}}));
-    ASSERT_EQ(loss.warnings().size(), 1U);
-    EXPECT_TRUE(loss.warnings()[0].starts_with("rounding left out 2 hatch lines, first in layer 6;"))
-        << loss.warnings()[0];
+    ASSERT_EQ(loss.findings().texts().size(), 1U);
+    EXPECT_TRUE(loss.findings().texts()[0].starts_with("rounding left out 2 hatch lines, first in layer 6;"))
+        << loss.findings().texts()[0];
 }
 
 TEST(WriterGrid, ForgetsContoursThatShrinkToAPointOrALine) {

@@ -50,6 +50,9 @@ TEST(LayerWriter, SaysWhichGapsBetweenLayersAreLost) {
 TEST(LayerWriter, SaysWhichCutsAreLost) {
     // As the table says, but for those that can be read back.
     const std::string_view keep[] = {"json", "npz", "svg"};
+    for (const FindingKind kind : {FindingKind::bottom_cuts, FindingKind::top_cuts, FindingKind::other_cuts})
+        for (const std::string_view name : keep)
+            EXPECT_NE(std::string_view(description(kind).many).find(name), std::string_view::npos) << name;
     for (const LayerFormat& format : layer_formats()) {
         if (!format.one_way) {
             EXPECT_EQ(format.cuts, std::find(std::begin(keep), std::end(keep), format.name) != std::end(keep))
@@ -246,17 +249,15 @@ TEST(WriteLosses, AreTheSameHoweverTheLayersAreDividedIntoRanges) {
         return losses;
     };
     const WriteLosses all = losses_of(0, 12);
-    EXPECT_EQ(all.gaps.count, 2U);
-    EXPECT_EQ(all.gaps.z, 4.5);
-    EXPECT_EQ(all.bottom_cuts, 12U);
+    EXPECT_EQ(all.found.count(FindingKind::unwritten_gaps), 2U);
+    EXPECT_EQ(all.found.of(FindingKind::unwritten_gaps).first_z, 4.5);
+    EXPECT_EQ(all.found.count(FindingKind::bottom_cuts), 12U);
     for (std::size_t first = 0; first <= 12; ++first)
         for (std::size_t second = first; second <= 12; ++second) {
             WriteLosses sum = losses_of(0, first);
             sum.add(losses_of(first, second)); // may be empty
             sum.add(losses_of(second, 12));
-            EXPECT_EQ(sum.gaps.count, all.gaps.count) << first << ", " << second;
-            EXPECT_EQ(sum.gaps.z, all.gaps.z) << first << ", " << second;
-            EXPECT_EQ(sum.cuts.count, all.cuts.count);
+            EXPECT_EQ(sum.found.by_file, all.found.by_file) << first << ", " << second;
             EXPECT_EQ(sum.layers, 12U);
             EXPECT_EQ(sum.top, all.top);
         }

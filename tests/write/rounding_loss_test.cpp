@@ -33,7 +33,7 @@ TEST(RoundingLoss, AddsUpInAnyOrder) {
         std::uint64_t lost = 0;
         std::uint64_t lines = 0;
         double moved = 0;
-        std::uint64_t first = WriteLosses::Rounded::no_layer;
+        std::uint64_t first = 100;
         for (std::int64_t n = random.integer(0, 9); n > 0; --n) {
             const Loss loss{{.moved_mm = random.real(0, 0.02),
                              .merged = static_cast<std::uint64_t>(random.integer(0, 3)),
@@ -41,13 +41,13 @@ TEST(RoundingLoss, AddsUpInAnyOrder) {
                              .lost_lines = static_cast<std::uint64_t>(random.integer(0, 1))},
                             static_cast<std::uint64_t>(random.integer(0, 99))};
             all.push_back(loss);
-            merged += loss.contour.merged;
             lost += loss.contour.lost ? 1 : 0;
             lines += loss.contour.lost_lines;
-            moved = std::max(moved, loss.contour.moved_mm);
-            if (loss.contour.moved_mm > RoundingLoss::unnoticed_mm || loss.contour.lost ||
-                loss.contour.lost_lines > 0)
+            if (loss.contour.moved_mm > RoundingLoss::unnoticed_mm) {
+                merged += loss.contour.merged;
+                moved = std::max(moved, loss.contour.moved_mm);
                 first = std::min(first, loss.layer);
+            }
         }
         RoundingLoss forth;
         RoundingLoss back; // in two halves, the later one first
@@ -56,17 +56,15 @@ TEST(RoundingLoss, AddsUpInAnyOrder) {
             forth.add(all[i].contour, all[i].layer);
         for (std::size_t i = all.size(); i-- > 0;)
             (i % 2 == 0 ? back : half).add(all[i].contour, all[i].layer);
-        back.add(half.losses());
-        for (const RoundingLoss* loss : {&forth, &back}) {
-            const WriteLosses::Rounded found = loss->losses();
-            EXPECT_EQ(found.merged, merged);
-            EXPECT_EQ(found.contours, lost);
-            EXPECT_EQ(found.lines, lines);
-            EXPECT_EQ(found.moved_mm, moved);
-            EXPECT_EQ(found.layer, first);
-            EXPECT_EQ(loss->warnings().size(), first == WriteLosses::Rounded::no_layer ? 0U : 1U);
-        }
-        EXPECT_EQ(forth.warnings(), back.warnings());
+        Findings sum = back.findings();
+        sum.add(half.findings());
+        EXPECT_EQ(sum.by_file, forth.findings().by_file);
+        EXPECT_EQ(sum.count(FindingKind::vanished_contours), lost);
+        EXPECT_EQ(sum.count(FindingKind::vanished_hatch_lines), lines);
+        const Finding& points = sum.of(FindingKind::rounded_points);
+        EXPECT_EQ(points.amount, static_cast<double>(merged));
+        EXPECT_EQ(points.largest, moved);
+        EXPECT_EQ(points.first_layer, first == 100 ? 0 : first);
     }
 }
 
@@ -74,15 +72,16 @@ TEST(RoundingLoss, WarnsOfWhatIsNoticed) {
     RoundingLoss loss;
     loss.add({.moved_mm = RoundingLoss::unnoticed_mm, .merged = 3}, 1);
     loss.add_height(RoundingLoss::unnoticed_mm, 1);
-    EXPECT_TRUE(loss.warnings().empty());
+    EXPECT_TRUE(loss.findings().empty());
     loss.add({.moved_mm = 0.02, .merged = 1}, 7);
-    EXPECT_TRUE(says(loss.warnings(), "moved points by up to 0.02 mm, merged 4 of them"));
-    EXPECT_TRUE(says(loss.warnings(), "first in layer 7"));
+    EXPECT_TRUE(says(loss.findings().texts(), "moved points by up to 0.02 mm, merged 1 of them"));
+    EXPECT_TRUE(says(loss.findings().texts(), "first in layer 7"));
     loss.add({.lost = true, .lost_lines = 2}, 5);
-    EXPECT_TRUE(says(loss.warnings(), "left out 1 contour and 2 hatch lines, first in layer 5"));
+    EXPECT_TRUE(says(loss.findings().texts(), "left out 1 contour, first in layer 5"));
+    EXPECT_TRUE(says(loss.findings().texts(), "left out 2 hatch lines, first in layer 5"));
     loss.add_height(0.5, 9);
-    ASSERT_EQ(loss.warnings().size(), 2U);
-    EXPECT_TRUE(says(loss.warnings(), "heights of layers by up to 0.5 mm, first in layer 9"));
+    ASSERT_EQ(loss.findings().by_file.size(), 4U);
+    EXPECT_TRUE(says(loss.findings().texts(), "heights of layers by up to 0.5 mm, first in layer 9"));
 }
 
 TEST(RoundingLoss, DropsLinesThatShrankToAPoint) {

@@ -54,6 +54,28 @@ enum class FindingKind : std::uint32_t {
     no_contours,          ///< no layer has a contour, for another reason
     unreached_material,   ///< material that no scan vector reaches
     overlapping_parts,    ///< material of several parts, which scan vectors expose several times
+
+    // Content that the format of an output cannot hold.
+    rounded_points,        ///< contours whose points are moved noticeably; the amount is the merged points
+    vanished_contours,     ///< contours without any point after rounding
+    vanished_hatch_lines,  ///< hatch lines that rounding shrinks to a point
+    rounded_heights,       ///< heights of layers that are moved noticeably
+    unwritten_chains,      ///< open contours
+    unwritten_hatch_lines, ///< hatch lines
+    unwritten_gaps,        ///< layers that do not begin at the top of the previous layer
+    changed_labels,        ///< labels of parts with characters or a length that the file cannot have
+    unwritten_labels,      ///< labels of parts
+    unmarked_supports,     ///< parts that are supports
+    unwritten_parameters,  ///< parts with parameters of scan vectors
+    changed_parameters,    ///< exposures that lose a parameter that differs from its default
+    unknown_parameters,    ///< parts without parameters of scan vectors, which the format requires
+    unseen_material,       ///< layers with material too thin for the pixels of their images
+    bottom_cuts,           ///< layers that were cut at their bottom
+    top_cuts,              ///< layers that were cut at their top
+    other_cuts,            ///< layers that were cut elsewhere than there or in the middle
+    hidden_hatch_lines,    ///< layers of a page that are shown without their hatches
+    thinned_layers,        ///< layers of a page that are shown with fewer points
+    flattened_triangles,   ///< triangles of a mesh that lose their area or a corner by rounding
 };
 
 enum class Severity : std::uint8_t {
@@ -69,6 +91,7 @@ enum class FindingOrigin : std::uint8_t {
     layers,            ///< found by the check of layers
     vectors,           ///< found by the check of scan vectors
     layers_or_vectors, ///< found by both checks
+    output,            ///< lost on the way to a file
 };
 
 struct Finding;
@@ -134,6 +157,7 @@ struct Finding {
     std::uint64_t layers = 0;            ///< number of layers with the finding
     std::uint64_t of_layers = 0;         ///< number of all layers
     double first_z = 0;                  ///< height of the lowest of these layers, mm
+    std::uint64_t first_layer = 0;       ///< index of that layer, if the source of the finding sets it
     std::vector<std::string> parts = {}; ///< labels of the parts with the finding; empty if all parts have it
     /// Text about the first one: its location, such as "byte 120", and what was found there.
     std::string place = {};

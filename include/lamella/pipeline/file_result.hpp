@@ -120,10 +120,8 @@ struct FileResult {
     double top = 0;          ///< top of the last layer
     std::string format;      ///< format of the slice file, "" if none was written
     std::uint64_t bytes = 0; ///< number of bytes written
-    /// Losses in the slice file that its format causes; one line each (LayerWriter::warnings).
-    std::vector<std::string> warnings;
-    /// Losses in the page (FileJob::report); one line each.
-    std::vector<std::string> report_warnings;
+    Findings losses;         ///< in the slice file, caused by its format; see LayerWriter::findings
+    Findings report_losses;  ///< in the page (FileJob::report)
 
     /// Statistics of each layer in ascending z, and the volume as the sum of area times thickness; with
     /// FileJob::layer_statistics.

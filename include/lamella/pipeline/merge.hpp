@@ -30,7 +30,7 @@ struct MergeResult {
     /// Warnings about files that are rewritten, and about their rings that bound no material. Each line
     /// begins with the path of the file.
     std::vector<std::string> file_warnings;
-    std::vector<std::string> warnings; ///< content that the format cannot represent
+    Findings losses; ///< content that the format cannot represent; see LayerWriter::findings
 };
 
 /// Merges slice files of one format with adjoining layers, such as the shards of one job, in any order. If

@@ -7,6 +7,7 @@
 #include "lamella/core/execution.hpp"
 #include "lamella/core/layer_limits.hpp"
 #include "lamella/core/point.hpp"
+#include "lamella/findings/findings.hpp"
 #include "lamella/write/image_options.hpp"
 
 #include <cstddef>
@@ -27,39 +28,10 @@ namespace lamella {
 [[nodiscard]] Box3 part_box(std::span<const Layer> layers, std::span<const PointArray> hatches = {},
                             const Execution& execution = {.threads = 1});
 
-/// Counts of the content of a range of layers that the format of a file cannot hold. LayerWriter::warnings is
-/// derived from them. All members are numbers, so that processes can send them to one another.
+/// Content of a range of layers that the format of a file cannot hold, or that some formats cannot hold.
 struct WriteLosses {
-    /// Number of losses of a kind, and the height of the lowest one in mm.
-    struct Kind {
-        std::uint64_t count = 0;
-        double z = 0;
-
-        /// Adds the losses of layers above these.
-        void add(const Kind& above) noexcept;
-    };
-    /// Losses by rounding.
-    struct Rounded {
-        static constexpr std::uint64_t no_layer = ~std::uint64_t{0};
-
-        double moved_mm = 0;             ///< largest move of a point
-        std::uint64_t merged = 0;        ///< points equal to the previous point
-        std::uint64_t contours = 0;      ///< contours without any remaining point
-        std::uint64_t lines = 0;         ///< hatch lines that shrank to a point
-        std::uint64_t layer = no_layer;  ///< index of the first layer with any of these
-        double moved_heights_mm = 0;     ///< largest move of a height
-        std::uint64_t height = no_layer; ///< index of the first layer with a moved height
-
-        void add(const Rounded& other) noexcept;
-    };
-
-    Kind open_chains;
-    Kind hatches;                  ///< hatch lines
-    Kind gaps;                     ///< layers that do not begin at the top of the previous layer
-    Kind cuts;                     ///< layers that were not cut at mid-height
-    std::uint64_t bottom_cuts = 0; ///< layers that were cut at their bottom
-    std::uint64_t top_cuts = 0;    ///< layers that were cut at their top
-    Rounded rounded;
+    /// Findings of FindingOrigin::output that belong to layers.
+    Findings found;
 
     // The range itself, by which gaps between two ranges are found.
     std::uint64_t layers = 0;
@@ -68,7 +40,7 @@ struct WriteLosses {
     double top = 0;     ///< top of the last layer
 
     /// Adds the losses of layers above these, and a gap if they do not begin at the top of these.
-    void add(const WriteLosses& above) noexcept;
+    void add(const WriteLosses& above);
 };
 
 /// A range of the layers of a slice file. Several processes can write one file if the format stores layers
@@ -127,7 +99,7 @@ struct LayerWriteOptions {
     /// Upper bound on the bytes of the layers in the file; otherwise Error{limit} is thrown. 0: no limit. The
     /// end of a file, such as the directory of an archive, does not count.
     std::uint64_t most_bytes = 0;
-    /// If true, `finish` throws Error{defect} if there are warnings (LayerWriter::warnings).
+    /// If true, `finish` throws Error{defect} if there are findings.
     bool strict = false;
     /// Limits of the unions that geojson computes of a layer.
     LayerLimits limits = {};
@@ -209,15 +181,17 @@ class LayerWriter {
     /// Returns the number of bytes of the file so far, including layers that are still waiting to be written.
     [[nodiscard]] virtual std::uint64_t bytes() const noexcept = 0;
 
-    /// Returns one line for each warning. There is a warning for each kind of content that the format cannot
-    /// represent, for contours and lines lost by rounding, and for the largest displacement of points by
-    /// rounding if it exceeds 0.01 mm. Must be called after all layers are written.
-    [[nodiscard]] virtual std::vector<std::string> warnings() const { return {}; }
+    /// Returns the content that the format cannot represent, contours and lines lost by rounding, and the
+    /// largest displacement of points by rounding if it exceeds 0.01 mm: findings of FindingOrigin::output.
+    /// Must be called after all layers are written.
+    [[nodiscard]] virtual Findings findings() const { return {}; }
+    /// Returns their texts.
+    [[nodiscard]] std::vector<std::string> warnings() const { return findings().texts(); }
 
-    /// Returns the counts behind `warnings`, for the writer of another range of the file.
+    /// Returns the losses behind `findings`, for the writer of another range of the file.
     [[nodiscard]] virtual WriteLosses losses() const { return {}; }
 
-    /// Adds the losses of a range above this one (LayerFileChunk) to the losses that `warnings` reports.
+    /// Adds the losses of a range above this one (LayerFileChunk) to those that `findings` returns.
     virtual void add_losses(const WriteLosses& /*above*/) {}
 };
 
