@@ -402,6 +402,187 @@ constexpr std::array kinds{
                               "precision, which STL has; .ply and .obj keep it",
                        .many = "{count} triangles lose their area or a corner where it is rounded to single "
                                "precision, which STL has; .ply and .obj keep it"},
+    FindingDescription{
+        .kind = FindingKind::unclosed_rings,
+        .name = "unclosed_rings",
+        .origin = FindingOrigin::input,
+        .one = "{count} closed contour did not return to its first point; it was closed (first at {place})",
+        .many = "{count} closed contours did not return to their first point; they were closed (first at "
+                "{place})"},
+    FindingDescription{.kind = FindingKind::contours_with_gaps,
+                       .name = "contours_with_gaps",
+                       .origin = FindingOrigin::input,
+                       .one = "{count} contour has gaps, which were taken for lines (first at {place})",
+                       .many = "{count} contours have gaps, which were taken for lines (first at {place})"},
+    FindingDescription{.kind = FindingKind::open_polylines,
+                       .name = "open_polylines",
+                       .origin = FindingOrigin::input,
+                       .one = "{count} contour is open (first at {place})",
+                       .many = "{count} contours are open (first at {place})"},
+    FindingDescription{
+        .kind = FindingKind::returning_chains,
+        .name = "returning_chains",
+        .origin = FindingOrigin::input,
+        .one = "{count} open contour ends where it began; it is taken for a closed one (first at {place})",
+        .many =
+            "{count} open contours end where they began; they are taken for closed ones (first at {place})"},
+    FindingDescription{
+        .kind = FindingKind::reversed_by_direction,
+        .name = "reversed_by_direction",
+        .origin = FindingOrigin::input,
+        .one = "{count} contour ran against its stated direction; it was reversed (first at {place})",
+        .many = "{count} contours ran against their stated direction; they were reversed (first at {place})"},
+    FindingDescription{
+        .kind = FindingKind::outside_outlines,
+        .name = "outside_outlines",
+        .origin = FindingOrigin::input,
+        .one = "{count} outline lies outside of the groups with slic3r:z; it was left out (first at {place})",
+        .many = "{count} outlines lie outside of the groups with slic3r:z; they were left out (first at "
+                "{place})"},
+    FindingDescription{.kind = FindingKind::other_elements,
+                       .name = "other_elements",
+                       .origin = FindingOrigin::input,
+                       .one = "{count} element is no outline; it was passed over (first at {place})",
+                       .many = "{count} elements are no outlines; they were passed over (first at {place})"},
+    FindingDescription{.kind = FindingKind::unfollowed_transforms,
+                       .name = "unfollowed_transforms",
+                       .origin = FindingOrigin::input,
+                       .one = "{count} element has transforms, which were not followed (first at {place})",
+                       .many =
+                           "{count} elements have transforms, which were not followed (first at {place})"},
+    FindingDescription{
+        .kind = FindingKind::reversed_by_rule,
+        .name = "reversed_by_rule",
+        .origin = FindingOrigin::input,
+        .one = "{count} contour ran against its type or fill rule; it was reversed (first at {place})",
+        .many =
+            "{count} contours ran against their type or fill rule; they were reversed (first at {place})"},
+    FindingDescription{.kind = FindingKind::unsorted_rings,
+                       .name = "unsorted_rings",
+                       .origin = FindingOrigin::input,
+                       .one = "{count} path has too many rings to find those that its fill rule makes holes; "
+                              "unite it with `fill` evenodd (first at {place})",
+                       .many = "{count} paths have too many rings to find those that their fill rule makes "
+                               "holes; unite them with `fill` evenodd (first at {place})"},
+    FindingDescription{
+        .kind = FindingKind::objects_without_slices,
+        .name = "objects_without_slices",
+        .origin = FindingOrigin::input,
+        .one = "{count} object of the build has no slices; it was left out (first at {place})",
+        .many = "{count} objects of the build have no slices; they were left out (first at {place})"},
+    FindingDescription{.kind = FindingKind::no_solids,
+                       .name = "no_solids",
+                       .origin = FindingOrigin::input,
+                       .one = "{count} object is of type surface or other, which is no solid; it was left "
+                              "out (first at {place})",
+                       .many = "{count} objects are of type surface or other, which are no solids; they were "
+                               "left out (first at {place})"},
+    FindingDescription{
+        .kind = FindingKind::items_not_printed,
+        .name = "items_not_printed",
+        .origin = FindingOrigin::input,
+        .one = "{count} item is marked in the build as not to be printed; it was left out (first at {place})",
+        .many = "{count} items are marked in the build as not to be printed; they were left out (first at "
+                "{place})"},
+    FindingDescription{
+        .kind = FindingKind::other_block_counts,
+        .name = "other_block_counts",
+        .origin = FindingOrigin::input,
+        .one = "{count} work plane announces another number of blocks than the file has (first at {place})",
+        .many = "{count} work planes announce another number of blocks than the file has (first at {place})"},
+    FindingDescription{.kind = FindingKind::other_plane_numbers,
+                       .name = "other_plane_numbers",
+                       .origin = FindingOrigin::input,
+                       .one = "{count} number of a work plane does not follow that of the one before; planes "
+                              "may be missing (first at {place})",
+                       .many = "{count} numbers of work planes do not follow those of the ones before; "
+                               "planes may be missing (first at {place})"},
+    FindingDescription{
+        .kind = FindingKind::moved_planes,
+        .name = "moved_planes",
+        .origin = FindingOrigin::input,
+        .one =
+            "{count} work plane is moved or rotated; its vectors were read as they stand (first at {place})",
+        .many = "{count} work planes are moved or rotated; their vectors were read as they stand (first at "
+                "{place})"},
+    FindingDescription{
+        .kind = FindingKind::other_vectors,
+        .name = "other_vectors",
+        .origin = FindingOrigin::input,
+        .one = "{count} block holds other vectors than lines and hatches; it was left out (first at {place})",
+        .many = "{count} blocks hold other vectors than lines and hatches; they were left out (first at "
+                "{place})"},
+    FindingDescription{
+        .kind = FindingKind::repeated_blocks,
+        .name = "repeated_blocks",
+        .origin = FindingOrigin::input,
+        .one =
+            "{count} block is to be executed more than once; its vectors were read once (first at {place})",
+        .many = "{count} blocks are to be executed more than once; their vectors were read once (first at "
+                "{place})"},
+    FindingDescription{.kind = FindingKind::repeated_planes,
+                       .name = "repeated_planes",
+                       .origin = FindingOrigin::input,
+                       .one = "{count} work plane is to be executed more than once; its vectors were read "
+                              "once (first at {place})",
+                       .many = "{count} work planes are to be executed more than once; their vectors were "
+                               "read once (first at {place})"},
+    FindingDescription{
+        .kind = FindingKind::blocks_of_lasers,
+        .name = "blocks_of_lasers",
+        .origin = FindingOrigin::input,
+        .one = "{count} block is for another laser than the first; which one was left out (first at {place})",
+        .many =
+            "{count} blocks are for another laser than the first; which one was left out (first at {place})"},
+    FindingDescription{
+        .kind = FindingKind::segments_of_lasers,
+        .name = "segments_of_lasers",
+        .origin = FindingOrigin::input,
+        .one =
+            "{count} segment is for another laser than the first; which one was left out (first at {place})",
+        .many = "{count} segments are for another laser than the first; which one was left out (first at "
+                "{place})"},
+    FindingDescription{.kind = FindingKind::unknown_names,
+                       .name = "unknown_names",
+                       .origin = FindingOrigin::input,
+                       .one = "{count} file has a name that says nothing of its vectors; they are taken for "
+                              "those of the core (first at {place})",
+                       .many = "{count} files have names that say nothing of their vectors; they are taken "
+                               "for those of the core (first at {place})"},
+    FindingDescription{.kind = FindingKind::halves_of_settings,
+                       .name = "halves_of_settings",
+                       .origin = FindingOrigin::input,
+                       .one = "{count} file has but one of LaserSpeed and LaserPower; the other one is taken "
+                              "to be 0 (first at {place})",
+                       .many = "{count} files have but one of LaserSpeed and LaserPower; the other one is "
+                               "taken to be 0 (first at {place})"},
+    FindingDescription{.kind = FindingKind::pulsed_beams,
+                       .name = "pulsed_beams",
+                       .origin = FindingOrigin::input,
+                       .one = "{count} file is for a pulsed beam; the distance and time of its points were "
+                              "left out (first at {place})",
+                       .many = "{count} files are for a pulsed beam; the distance and time of its points "
+                               "were left out (first at {place})"},
+    FindingDescription{.kind = FindingKind::unlisted_files,
+                       .name = "unlisted_files",
+                       .origin = FindingOrigin::input,
+                       .one = "{count} Common Layer Interface file is not in the list of parameters; it was "
+                              "left out (first at {place})",
+                       .many = "{count} Common Layer Interface files are not in the list of parameters; they "
+                               "were left out (first at {place})"},
+    FindingDescription{
+        .kind = FindingKind::dropped_contours,
+        .name = "dropped_contours",
+        .origin = FindingOrigin::input,
+        .one = "{count} contour had too few different points; it was dropped (first at {place})",
+        .many = "{count} contours had too few different points; they were dropped (first at {place})"},
+    FindingDescription{.kind = FindingKind::unknown_commands,
+                       .name = "unknown_commands",
+                       .origin = FindingOrigin::input,
+                       .one = "{count} command is unknown here, or has no number that it can have; it was "
+                              "left out (first at {place})",
+                       .many = "{count} commands are unknown here, or have no numbers that they can have; "
+                               "they were left out (first at {place})"},
 };
 
 } // namespace

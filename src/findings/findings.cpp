@@ -175,6 +175,18 @@ std::vector<std::string> Findings::texts() const {
     return texts;
 }
 
+bool Findings::count_again(FindingKind kind, std::uint64_t count) noexcept {
+    for (Finding& finding : by_file)
+        if (finding.kind == kind && finding.file == 0 && finding.entries.empty()) {
+            finding.count += count;
+            const auto sum = std::find_if(total.begin(), total.end(),
+                                          [&](const Finding& of_all) { return of_all.kind == kind; });
+            sum->count += count;
+            return true;
+        }
+    return false;
+}
+
 void Findings::add(Finding finding) {
     Finding& of_file = find_or_insert(by_file, finding);
     add_numbers(of_file, finding);

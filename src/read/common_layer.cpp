@@ -141,7 +141,7 @@ CommonLayerContent read_common_layer_content(std::string_view bytes, const std::
         file.warnings.push_back(
             fmt::format("the header announces {} layers; the file has {}", *header.layers, found));
     file.rounding = geometry.rounding(header.binary);
-    geometry.append_to(file.warnings);
+    append_to(geometry.found(), file.warnings);
     const std::vector<CommonLayerPart>& parts = opened->number_parts(file);
     content.layers = std::move(geometry.layers);
     content.parse = parsing_again<CommonLayerFile>(opened);

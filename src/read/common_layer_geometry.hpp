@@ -141,11 +141,7 @@ class CommonLayerGeometry {
         append_layers(layers, std::move(piece.layers), limits_);
         end = piece.end;
         decimals_.add(piece.decimals_);
-        unclosed_.add(piece.unclosed_);
-        returning_.add(piece.returning_);
-        turned_.add(piece.turned_);
-        dropped_.add(piece.dropped_);
-        unknown_.add(piece.unknown_);
+        found_.add(piece.found_);
     }
 
     /// Takes a non-standard command, with its number if it has one. Commands that set the exposure apply to
@@ -158,7 +154,8 @@ class CommonLayerGeometry {
                                                : command == "FOCUS" ? &beam_.focus_mm
                                                                     : nullptr;
         if (setting == nullptr || !usable) {
-            unknown_.note([&] { return fmt::format("{}, $${}", location(), excerpt(command)); });
+            found_.note(FindingKind::unknown_commands,
+                        [&] { return fmt::format("{}, $${}", location(), excerpt(command)); });
             if (setting != nullptr)
                 setting->reset();
             return;
@@ -207,21 +204,21 @@ class CommonLayerGeometry {
         const bool returning_chain = direction == CommonLayerDirection::open && layer.is_returning_chain();
         const bool closed = direction != CommonLayerDirection::open || returning_chain;
         if (!layer.end_contour(closed, number_of(part, VectorKind::contour, location), limits_, location,
-                               dropped_) ||
+                               found_) ||
             !closed)
             return;
         if (returning_chain) {
-            returning_.note(location);
+            found_.note(FindingKind::returning_chains, location);
             return;
         }
         if (!returns)
-            unclosed_.note(location);
+            found_.note(FindingKind::unclosed_rings, location);
         // If the points run in the opposite direction, the stated direction prevails.
         const std::span<Point2> ring = std::span(layer.points).subspan(begin);
         const double area = ring_area(ring);
         if (direction == CommonLayerDirection::counter_clockwise ? area < 0 : area > 0) {
             std::reverse(ring.begin(), ring.end());
-            turned_.note(location);
+            found_.note(FindingKind::reversed_by_direction, location);
         }
     }
 
@@ -270,13 +267,7 @@ class CommonLayerGeometry {
         return {known ? units_ * decimals_.step() : 0, single_precision};
     }
 
-    void append_to(std::vector<std::string>& warnings) const {
-        unclosed_.append_to(warnings);
-        returning_.append_to(warnings);
-        turned_.append_to(warnings);
-        dropped_.append_to(warnings);
-        unknown_.append_to(warnings);
-    }
+    [[nodiscard]] const Findings& found() const { return found_; }
 
     std::vector<RawLayer> layers;
     std::size_t end = 0; ///< offset at which the piece ends
@@ -311,14 +302,7 @@ class CommonLayerGeometry {
     std::vector<LayerBeam> beams_;
     Decimals decimals_;
     PartNumbers<CommonLayerPart> parts_;
-    UnclosedContours unclosed_;
-    ReturningChains returning_;
-    CountedWarning turned_{"contour ran against its stated direction; it was reversed",
-                           "contours ran against their stated direction; they were reversed"};
-    DroppedContours dropped_;
-    CountedWarning unknown_{
-        "command is unknown here, or has no number that it can have; it was left out",
-        "commands are unknown here, or have no numbers that they can have; they were left out"};
+    Findings found_;
 };
 
 /// Reads a piece of an ASCII file, from `begin`, which is on this line, up to the first layer at or after

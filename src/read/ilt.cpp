@@ -127,15 +127,10 @@ std::vector<Section> read_parameters(std::string_view text, const std::string& n
 }
 
 /// Warns of files that are not in the list: they have no parameters and are not read.
-void report_unlisted(const ZipReader& zip, const std::set<const ZipEntry*>& listed,
-                     std::vector<std::string>& warnings) {
-    CountedWarning unlisted(
-        "Common Layer Interface file is not in the list of parameters; it was left out",
-        "Common Layer Interface files are not in the list of parameters; they were left out");
+void report_unlisted(const ZipReader& zip, const std::set<const ZipEntry*>& listed, Findings& found) {
     for (const ZipEntry& entry : zip.entries())
         if (listed.count(&entry) == 0 && lower_case(entry.name).ends_with(".cli"))
-            unlisted.note([&] { return excerpt(entry.name); });
-    unlisted.append_to(warnings);
+            found.note(FindingKind::unlisted_files, [&] { return excerpt(entry.name); });
 }
 
 /// A word in the name of a file, and the vectors that it denotes.
@@ -264,15 +259,15 @@ Exposure named_exposure(std::string_view file, VectorKind held, bool& known) {
 }
 
 /// Returns the exposure of a part of a file in the archive. Returns nullopt if the file has no speed and its
-/// label does not specify scan vectors. Counts names without a known word in `unknown`.
+/// label does not specify scan vectors. Counts names without a known word in `found`.
 std::optional<Exposure> exposure_of(const Section& section, std::string_view label, VectorKind held,
-                                    CountedWarning& unknown) {
+                                    Findings& found) {
     std::optional<Exposure> exposure = labelled_exposure(label);
     if (!exposure && section.parameters.speed_mm_s > 0) {
         bool known = false;
         exposure = named_exposure(section.name, held, known);
         if (!known)
-            unknown.note([&] { return excerpt(section.name); });
+            found.note(FindingKind::unknown_names, [&] { return excerpt(section.name); });
     }
     if (exposure)
         exposure->parameters = section.parameters;
@@ -364,14 +359,7 @@ LayerFile read_ilt(const ZipReader& zip, ReadLimits& limits, const Execution& ex
     std::vector<std::string> sections; // of `contents`
     std::vector<ByteSource> sources;   // likewise; layers that are parsed again refer to their bytes
     std::set<const ZipEntry*> known;
-    CountedWarning unknown(
-        "file has a name that says nothing of its vectors; they are taken for those of the core",
-        "files have names that say nothing of their vectors; they are taken for those of the core");
-    CountedWarning pulsed("file is for a pulsed beam; the distance and time of its points were left out",
-                          "files are for a pulsed beam; the distance and time of its points were left out");
-    CountedWarning one_of_two(
-        "file has but one of LaserSpeed and LaserPower; the other one is taken to be 0",
-        "files have but one of LaserSpeed and LaserPower; the other one is taken to be 0");
+    Findings found;
     const std::string_view text = list.text().substr(after_byte_order_mark(list.text()));
     for (const Section& section : read_parameters(text, list.name, limits)) {
         const ZipEntry* const entry = zip.find(section.name);
@@ -386,9 +374,9 @@ LayerFile read_ilt(const ZipReader& zip, ReadLimits& limits, const Execution& ex
                             "for each file",
                             list.name, section.line, excerpt(section.name)));
         if (section.pulsed)
-            pulsed.note(at_line(section.line));
+            found.note(FindingKind::pulsed_beams, at_line(section.line));
         if (section.has_speed != section.has_power)
-            one_of_two.note(at_line(section.line));
+            found.note(FindingKind::halves_of_settings, at_line(section.line));
         sources.push_back(unpacked_entry(zip, *entry, limits));
         const ByteSource& source = sources.back();
         bytes += source.bytes.size();
@@ -400,9 +388,7 @@ LayerFile read_ilt(const ZipReader& zip, ReadLimits& limits, const Execution& ex
                             source.name));
         contents.push_back(read_common_layer_content(
             source.text(), source.name,
-            [&](std::string_view label, VectorKind held) {
-                return exposure_of(section, label, held, unknown);
-            },
+            [&](std::string_view label, VectorKind held) { return exposure_of(section, label, held, found); },
             limits, execution));
         if (limits.in_memory())
             sources.back() = {};
@@ -419,10 +405,8 @@ LayerFile read_ilt(const ZipReader& zip, ReadLimits& limits, const Execution& ex
         for (const std::string& warning : files.back().warnings)
             result.warnings.push_back(fmt::format("{}: {}", sections[i], warning));
     }
-    unknown.append_to(result.warnings);
-    one_of_two.append_to(result.warnings);
-    pulsed.append_to(result.warnings);
-    report_unlisted(zip, known, result.warnings);
+    report_unlisted(zip, known, found);
+    append_to(found, result.warnings);
     result.units_mm = files.front().units_mm;
     result.rounding = files.front().rounding;
     for (const LayerFile& file : files)

@@ -213,9 +213,9 @@ void append_to(const DistinctNames& names, std::vector<std::string>& warnings) {
                                        printable(names.first_changed(), longest)));
 }
 
-void CountedWarning::append_to(std::vector<std::string>& warnings) const {
-    if (count_ != 0)
-        warnings.push_back(fmt::format("{} (first at {})", counted(count_, one_, many_), first_));
+void append_to(const Findings& found, std::vector<std::string>& warnings) {
+    for (std::string& text : found.texts())
+        warnings.push_back(std::move(text));
 }
 
 bool RawLayer::keep_contour(bool closed, std::uint32_t part) {

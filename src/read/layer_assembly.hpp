@@ -4,6 +4,7 @@
 
 #include "lamella/contour/layer.hpp"
 #include "lamella/core/point.hpp"
+#include "lamella/findings/findings.hpp"
 #include "lamella/read/layer_file.hpp"
 
 #include "core/counted.hpp"
@@ -28,50 +29,8 @@
 
 namespace lamella {
 
-/// Counts one kind of irregularity and warns once for the whole file.
-class CountedWarning {
-  public:
-    /// `one` is the warning for one occurrence, `many` that for several.
-    CountedWarning(const char* one, const char* many) : one_(one), many_(many) {}
-
-    /// Counts an occurrence. `location` is called only for the first one.
-    template <class Location>
-    void note(const Location& location) {
-        if (count_++ == 0)
-            first_ = location();
-    }
-    /// Adds the occurrences in a later part of the file.
-    void add(const CountedWarning& later) {
-        if (count_ == 0)
-            first_ = later.first_;
-        count_ += later.count_;
-    }
-    /// Adds a warning such as "3 contours were not closed; they were closed (first at byte 120)".
-    void append_to(std::vector<std::string>& warnings) const;
-
-  private:
-    const char* one_;
-    const char* many_;
-    std::uint64_t count_ = 0;
-    std::string first_;
-};
-
-/// Irregularities of all formats.
-struct DroppedContours : CountedWarning {
-    DroppedContours()
-        : CountedWarning("contour had too few different points; it was dropped",
-                         "contours had too few different points; they were dropped") {}
-};
-struct UnclosedContours : CountedWarning {
-    UnclosedContours()
-        : CountedWarning("closed contour did not return to its first point; it was closed",
-                         "closed contours did not return to their first point; they were closed") {}
-};
-struct ReturningChains : CountedWarning {
-    ReturningChains()
-        : CountedWarning("open contour ends where it began; it is taken for a closed one",
-                         "open contours end where they began; they are taken for closed ones") {}
-};
+/// Warns of findings.
+void append_to(const Findings& found, std::vector<std::string>& warnings);
 
 /// Makes labels of parts suitable for messages and for other files.
 class ReadLabels {
@@ -133,15 +92,15 @@ struct RawLayer {
     [[nodiscard]] bool is_returning_chain() const { return returns() && points.size() - contour_begin() > 3; }
 
     /// Ends the contour. Drops points equal to the one before, and the last point of a ring if it repeats the
-    /// first one. If fewer than three points of a ring or two of a chain are left, drops the contour, counts
-    /// it in `dropped` and returns false.
+    /// first one. If fewer than three points of a ring or two of a chain are left, drops the contour, adds it
+    /// to `found` and returns false.
     template <class Location>
     bool end_contour(bool closed, std::uint32_t part, ReadLimits& limits, const Location& where,
-                     DroppedContours& dropped) {
+                     Findings& found) {
         limits.make_room(ends, 1, where);
         const bool kept = keep_contour(closed, part);
         if (!kept)
-            dropped.note(where);
+            found.note(FindingKind::dropped_contours, where);
         return kept;
     }
 

@@ -186,14 +186,7 @@ class SvgReader {
         for (const MetPart& part : layers.met_)
             meet(part);
         append_layers(groups_, std::move(layers.groups_), limits_);
-        open_.add(layers.open_);
-        outside_.add(layers.outside_);
-        other_.add(layers.other_);
-        transformed_.add(layers.transformed_);
-        returning_.add(layers.returning_);
-        dropped_.add(layers.dropped_);
-        reversed_.add(layers.reversed_);
-        even_odd_left_.add(layers.even_odd_left_);
+        found_.add(layers.found_);
         return true;
     }
 
@@ -238,7 +231,7 @@ class SvgReader {
             const std::string_view kind = local(element);
             const bool has_points = kind == "polygon" || kind == "polyline";
             if (!in_layer_ && (has_points || kind == "path"))
-                outside_.note(at_line(line));
+                found_.note(FindingKind::outside_outlines, at_line(line));
             else if (!in_layer_)
                 return;
             else if (has_points)
@@ -248,10 +241,10 @@ class SvgReader {
             else if (kind == "g")
                 start_part(attributes, line);
             else if (kind != "title" && kind != "desc")
-                other_.note(at_line(line));
+                found_.note(FindingKind::other_elements, at_line(line));
         }
         if ((is_root || in_layer_) && !attributes.find("transform").empty())
-            transformed_.note(at_line(line));
+            found_.note(FindingKind::unfollowed_transforms, at_line(line));
     }
 
     void end() {
@@ -274,16 +267,9 @@ class SvgReader {
         file.rule = rule_;
         file.parts = std::move(parts_);
         labels_.append_to(file.warnings);
-        open_.append_to(file.warnings);
-        returning_.append_to(file.warnings);
-        outside_.append_to(file.warnings);
-        other_.append_to(file.warnings);
-        transformed_.append_to(file.warnings);
         if (!unknown_scale_.empty())
             file.warnings.push_back(unknown_scale_);
-        reversed_.append_to(file.warnings);
-        even_odd_left_.append_to(file.warnings);
-        dropped_.append_to(file.warnings);
+        append_to(found_, file.warnings);
         place_groups(groups_, file.warnings);
         check_part_planes(file, groups_.size(), bytes);
         std::vector<PlacedLayer> planes;
@@ -478,7 +464,7 @@ class SvgReader {
             if (area == 0 || (area < 0) == hole)
                 continue;
             std::reverse(ring.begin(), ring.end());
-            reversed_.note(at_line(line));
+            found_.note(FindingKind::reversed_by_rule, at_line(line));
         }
     }
 
@@ -494,9 +480,9 @@ class SvgReader {
         const std::optional<std::size_t> reversed = direct_by_even_odd(rings);
         limits_.give_back(0, rings.size() * (sizeof(Box3) + sizeof rings[0]));
         if (!reversed)
-            even_odd_left_.note(at_line(line));
+            found_.note(FindingKind::unsorted_rings, at_line(line));
         for (std::size_t i = 0; i < reversed.value_or(0); ++i)
-            reversed_.note(at_line(line));
+            found_.note(FindingKind::reversed_by_rule, at_line(line));
     }
 
     /// Reads straight outlines: M, L, H, V and Z in both cases. Slic3r inverts the y axis in paths.
@@ -572,12 +558,12 @@ class SvgReader {
             return;
         const bool returning_chain = !closed && layer.is_returning_chain();
         closed = closed || returning_chain;
-        if (!layer.end_contour(closed, part_, limits_, at_line(line), dropped_))
+        if (!layer.end_contour(closed, part_, limits_, at_line(line), found_))
             return;
         if (returning_chain)
-            returning_.note(at_line(line));
+            found_.note(FindingKind::returning_chains, at_line(line));
         else if (!closed)
-            open_.note(at_line(line));
+            found_.note(FindingKind::open_polylines, at_line(line));
     }
 
     /// Makes room for one more item.
@@ -607,23 +593,8 @@ class SvgReader {
     Point2 origin_; ///< origin of the part in Lamella's own files; in other files coordinates are relative to
                     ///< a corner of the part
     std::vector<Group> groups_;
-    CountedWarning open_{"contour is open", "contours are open"};
-    CountedWarning outside_{"outline lies outside of the groups with slic3r:z; it was left out",
-                            "outlines lie outside of the groups with slic3r:z; they were left out"};
-    CountedWarning other_{"element is no outline; it was passed over",
-                          "elements are no outlines; they were passed over"};
-    CountedWarning transformed_{"element has transforms, which were not followed",
-                                "elements have transforms, which were not followed"};
-    CountedWarning reversed_{"contour ran against its type or fill rule; it was reversed",
-                             "contours ran against their type or fill rule; they were reversed"};
-    CountedWarning even_odd_left_{
-        "path has too many rings to find those that its fill rule makes holes; unite it "
-        "with `fill` evenodd",
-        "paths have too many rings to find those that their fill rule makes holes; unite "
-        "them with `fill` evenodd"};
-    ReturningChains returning_;
     ReadLabels labels_;
-    DroppedContours dropped_;
+    Findings found_;
 };
 
 } // namespace

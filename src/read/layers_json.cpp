@@ -36,7 +36,7 @@ struct JsonLayer : RawLayer {
 /// Consecutive layers.
 struct JsonPiece {
     std::vector<JsonLayer> layers = {};
-    DroppedContours dropped = {};
+    Findings found = {};
     std::exception_ptr error = nullptr; ///< the reason why the next layer is unreadable
     std::size_t stop = 0;               ///< offset of the next layer, or of the end of the array
     std::size_t end = 0;                ///< that of the next layer; behind the text if there is none
@@ -122,7 +122,7 @@ class JsonPieceReader {
             if (key == "rings" || key == "chains")
                 text_.array([&] {
                     read_points(raw.points);
-                    raw.end_contour(key == "rings", part, limits_, at_byte(text_.at()), piece_.dropped);
+                    raw.end_contour(key == "rings", part, limits_, at_byte(text_.at()), piece_.found);
                 });
             else if (key == "hatches")
                 read_hatches(raw, part);
@@ -195,13 +195,13 @@ class JsonLayers {
         if (piece.error)
             std::rethrow_exception(piece.error);
         text_.move_to(piece.stop);
-        dropped_.add(piece.dropped);
+        found_.add(piece.found);
         append_layers(layers_, std::move(piece.layers), limits);
     }
 
     /// Returns the offset behind the layers.
     [[nodiscard]] std::size_t stop() const { return text_.at(); }
-    [[nodiscard]] const DroppedContours& dropped() const { return dropped_; }
+    [[nodiscard]] const Findings& found() const { return found_; }
     [[nodiscard]] std::vector<JsonLayer> take_layers() { return std::move(layers_); }
 
   private:
@@ -222,7 +222,7 @@ class JsonLayers {
     const LayerFile& file_;
     JsonText text_;
     std::vector<JsonLayer> layers_;
-    DroppedContours dropped_;
+    Findings found_;
 };
 
 class LayersJsonReader {
@@ -262,7 +262,7 @@ class LayersJsonReader {
                 {&layer, static_cast<std::uint64_t>(*layer.index), layer.z, layer.bottom, layer.top});
         Executor executor(execution_);
         add_layers(file_, planes, limits_, executor, parsing_again<JsonLayers>(layers_));
-        layers_->dropped().append_to(file_.warnings);
+        append_to(layers_->found(), file_.warnings);
     }
 
   private:

@@ -263,7 +263,7 @@ class NpzReader {
         for (const Array* lengths : {&points, &z, &bottom, &top})
             if (lengths->is_single_precision())
                 file_.rounding.single_precision = true;
-        dropped_.append_to(file_.warnings);
+        append_to(found_, file_.warnings);
     }
 
   private:
@@ -296,7 +296,7 @@ class NpzReader {
     /// Consecutive contours, as a list of layers for each change of layers.
     struct Piece {
         std::vector<std::pair<std::uint64_t, RawLayer>> layers = {}; ///< with the number of the layer
-        DroppedContours dropped = {};
+        Findings found = {};
         std::size_t end = 0; ///< number of the next contour
     };
 
@@ -315,14 +315,14 @@ class NpzReader {
 
         /// Adds contour i, which has the points from `begin` to `end`, to its layer.
         void add(std::uint64_t i, std::uint64_t begin, std::uint64_t end, std::uint32_t of_part,
-                 RawLayer& into, ReadLimits& limits, DroppedContours& dropped) const {
+                 RawLayer& into, ReadLimits& limits, Findings& found) const {
             const auto position = [&] {
                 return fmt::format("contour {}", i);
             };
             limits.make_room(into.points, end - begin, position);
             for (std::uint64_t k = begin; k < end; ++k)
                 into.points.push_back({points.length(2 * k), points.length(2 * k + 1)});
-            into.end_contour(closed.whole(i, 1) != 0, of_part, limits, position, dropped);
+            into.end_contour(closed.whole(i, 1) != 0, of_part, limits, position, found);
         }
     };
 
@@ -351,7 +351,7 @@ class NpzReader {
                                                                                      ReadLimits& limits) {
             constexpr std::uint64_t any = std::numeric_limits<std::uint64_t>::max();
             RawLayer raw;
-            DroppedContours dropped;
+            Findings found;
             const auto for_run = [&](const Array& layer, std::uint64_t from, std::uint64_t to,
                                      const auto& add) {
                 for (std::uint64_t i = from; i < to && layer.whole(i, any) == layer.whole(from, any); ++i)
@@ -362,8 +362,7 @@ class NpzReader {
                     const auto offset = [&](std::uint64_t k) {
                         return contours.offsets.whole(k, contours.points.size());
                     };
-                    contours.add(i, offset(i), offset(i + 1), contours.part_of(i, parts), raw, limits,
-                                 dropped);
+                    contours.add(i, offset(i), offset(i + 1), contours.part_of(i, parts), raw, limits, found);
                 });
             else if (begin != nothing)
                 for_run(hatches->layer, begin - contours.size(), hatches->lines.size(),
@@ -381,7 +380,7 @@ class NpzReader {
                 return read_piece(contours, begin, limit, raw.size());
             },
             [&](Piece&& piece) {
-                dropped_.add(piece.dropped);
+                found_.add(piece.found);
                 for (auto& [layer, contents] : piece.layers)
                     put(std::move(contents), raw[layer]);
             });
@@ -427,7 +426,7 @@ class NpzReader {
                     piece.layers.back().second.end_layer(limits_);
                 piece.layers.emplace_back(layer, RawLayer()).second.begin = static_cast<std::size_t>(i);
             }
-            contours.add(i, begin, end, part, piece.layers.back().second, limits_, piece.dropped);
+            contours.add(i, begin, end, part, piece.layers.back().second, limits_, piece.found);
             begin = end;
         }
         if (!piece.layers.empty())
@@ -505,7 +504,7 @@ class NpzReader {
     const ZipReader& zip_;
     LayerFile& file_;
     ReadLimits& limits_;
-    DroppedContours dropped_;
+    Findings found_;
 };
 
 } // namespace

@@ -278,52 +278,13 @@ struct WorkPlane {
     std::uint64_t bytes = 0; ///< size of its shell and its blocks
 };
 
-/// Irregularities of work planes and blocks.
-struct PlaneWarnings {
-    CountedWarning other_blocks{"work plane announces another number of blocks than the file has",
-                                "work planes announce another number of blocks than the file has"};
-    CountedWarning other_numbers{
-        "number of a work plane does not follow that of the one before; planes may be missing",
-        "numbers of work planes do not follow those of the ones before; planes may be missing"};
-    CountedWarning moved{"work plane is moved or rotated; its vectors were read as they stand",
-                         "work planes are moved or rotated; their vectors were read as they stand"};
-    CountedWarning other_vectors{"block holds other vectors than lines and hatches; it was left out",
-                                 "blocks hold other vectors than lines and hatches; they were left out"};
-    CountedWarning repeated_blocks{"block is to be executed more than once; its vectors were read once",
-                                   "blocks are to be executed more than once; their vectors were read once"};
-    CountedWarning repeated_planes{
-        "work plane is to be executed more than once; its vectors were read once",
-        "work planes are to be executed more than once; their vectors were read once"};
-    CountedWarning other_lasers{"block is for another laser than the first; which one was left out",
-                                "blocks are for another laser than the first; which one was left out"};
-    DroppedContours dropped;
-
-    /// Adds those of later planes.
-    void add(const PlaneWarnings& later) {
-        for (const auto warning : all)
-            (this->*warning).add(later.*warning);
-        dropped.add(later.dropped);
-    }
-    void append_to(std::vector<std::string>& warnings) const {
-        for (const auto warning : all)
-            (this->*warning).append_to(warnings);
-        dropped.append_to(warnings);
-    }
-
-  private:
-    static constexpr CountedWarning PlaneWarnings::*all[] = {
-        &PlaneWarnings::other_blocks,  &PlaneWarnings::other_numbers,   &PlaneWarnings::moved,
-        &PlaneWarnings::other_vectors, &PlaneWarnings::repeated_blocks, &PlaneWarnings::repeated_planes,
-        &PlaneWarnings::other_lasers};
-};
-
 /// The contents of consecutive work planes.
 struct Planes {
     explicit Planes(ReadLimits& limits) : parts(limits) {}
 
     std::vector<RawLayer> layers;
     PartNumbers<BlockKind> parts;
-    PlaneWarnings warnings;
+    Findings found;
     std::uint64_t first_number = 0; ///< of the first plane
     std::uint64_t last_number = 0;
     std::size_t end = 0; ///< index of the plane that follows
@@ -331,7 +292,7 @@ struct Planes {
     /// Compares the numbers of two consecutive planes. If planes have no numbers, all are 0.
     void compare_numbers(std::uint64_t before, std::uint64_t number, const std::string& location) {
         if (number != 0 && number != before + 1)
-            warnings.other_numbers.note([&] { return location; });
+            found.note(FindingKind::other_plane_numbers, [&] { return location; });
     }
 };
 
@@ -357,15 +318,15 @@ class PlaneReader {
             else if (shell.field() == ovf::work_plane::number)
                 number = static_cast<std::uint64_t>(shell.integer());
             else if (shell.field() == ovf::work_plane::repeats && shell.integer() != 0)
-                planes_.warnings.repeated_planes.note(at_byte(plane.begin));
+                planes_.found.note(FindingKind::repeated_planes, at_byte(plane.begin));
             else if (shell.type() == ProtobufType::bits_32 &&
                      (shell.field() <= ovf::work_plane::y || (shell.field() >= ovf::work_plane::x_turn &&
                                                               shell.field() <= ovf::work_plane::z_turn)) &&
                      shell.real() != 0)
-                planes_.warnings.moved.note(at_byte(plane.begin));
+                planes_.found.note(FindingKind::moved_planes, at_byte(plane.begin));
         }
         if (blocks != 0 && blocks != static_cast<std::int64_t>(plane.table.positions.size()))
-            planes_.warnings.other_blocks.note(at_byte(plane.begin));
+            planes_.found.note(FindingKind::other_block_counts, at_byte(plane.begin));
         if (planes_.layers.size() == 1)
             planes_.first_number = number;
         else
@@ -388,13 +349,13 @@ class PlaneReader {
             else if (fields.field() == ovf::block::hatches)
                 hatches = fields.message();
             else if (fields.field() <= ovf::block::last_of_vectors)
-                planes_.warnings.other_vectors.note(at_byte(begin));
+                planes_.found.note(FindingKind::other_vectors, at_byte(begin));
             else if (fields.field() == ovf::block::marking_params_key)
                 kind.parameters = fields.integer();
             else if (fields.field() == ovf::block::laser_index && fields.integer() != 0)
-                planes_.warnings.other_lasers.note(at_byte(begin));
+                planes_.found.note(FindingKind::blocks_of_lasers, at_byte(begin));
             else if (fields.field() == ovf::block::repeats && fields.integer() != 0)
-                planes_.warnings.repeated_blocks.note(at_byte(begin));
+                planes_.found.note(FindingKind::repeated_blocks, at_byte(begin));
             else if (fields.field() == ovf::block::meta_data)
                 read_meta_data(fields.message(), kind);
             else if (fields.field() == ovf::block::lpbf_meta_data) {
@@ -463,7 +424,7 @@ class PlaneReader {
                            RawLayer& raw) {
         add_points(lines, begin, 2, raw.points);
         const bool closed = raw.points.size() - raw.contour_begin() > 3 && raw.returns();
-        raw.end_contour(closed, part, limits_, at_byte(begin), planes_.warnings.dropped);
+        raw.end_contour(closed, part, limits_, at_byte(begin), planes_.found);
     }
 
     void add_hatches(const ProtobufReader& hatches, std::uint64_t begin, std::uint32_t part, RawLayer& raw) {
@@ -498,7 +459,7 @@ class OvfReader {
         number_parts();
         make_layers();
         append_to(names_, file_.warnings);
-        all_.warnings.append_to(file_.warnings);
+        append_to(all_.found, file_.warnings);
         progress_.finish();
     }
 
@@ -558,7 +519,7 @@ class OvfReader {
     void take(Planes&& piece) {
         all_.compare_numbers(all_.last_number, piece.first_number, piece.layers.front().location);
         all_.last_number = piece.last_number;
-        all_.warnings.add(piece.warnings);
+        all_.found.add(piece.found);
         all_.parts.add(
             piece.parts, piece.layers, [](const BlockKind& kind) { return kind; },
             [&] { return std::string_view(piece.layers.front().location); });

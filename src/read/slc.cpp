@@ -128,10 +128,7 @@ PieceBegins pieces_of(std::string_view bytes, std::size_t begin) {
 /// Consecutive layers.
 struct SlcPiece {
     std::vector<RawLayer> layers = {};
-    UnclosedContours unclosed = {};
-    CountedWarning gaps{"contour has gaps, which were taken for lines",
-                        "contours have gaps, which were taken for lines"};
-    DroppedContours dropped = {};
+    Findings found = {};
     std::size_t end = 0;
     std::optional<double> top = {}; ///< of the part, if the piece has the mark of the end
 };
@@ -194,9 +191,7 @@ class SlcFile {
 
     void append(SlcPiece&& piece, ReadLimits& limits) {
         append_layers(all_.layers, std::move(piece.layers), limits);
-        all_.unclosed.add(piece.unclosed);
-        all_.gaps.add(piece.gaps);
-        all_.dropped.add(piece.dropped);
+        all_.found.add(piece.found);
         all_.end = piece.end;
         all_.top = piece.top;
     }
@@ -213,9 +208,7 @@ class SlcFile {
         if (all_.layers.empty())
             SlcBytes(bytes_, all_.end, name_)
                 .fail(all_.end, "no layer", "a slice file must have at least one");
-        all_.unclosed.append_to(warnings);
-        all_.gaps.append_to(warnings);
-        all_.dropped.append_to(warnings);
+        append_to(all_.found, warnings);
         sort_by_height(all_.layers, warnings);
         top = last_top(warnings);
         return std::move(all_.layers);
@@ -252,7 +245,7 @@ class SlcFile {
                 at, fmt::format("a contour of {} points", count),
                 fmt::format("{} bytes are left in the file, room for {}", in.left(), in.left() / point_size));
         if (gaps != 0)
-            piece.gaps.note(position);
+            piece.found.note(FindingKind::contours_with_gaps, position);
         limits.make_room(layer.points, count, position);
         for (std::uint32_t i = 0; i < count; ++i) {
             std::array<float, 2> p{};
@@ -265,8 +258,8 @@ class SlcFile {
         }
         const bool returns = layer.returns();
         const bool closed = returns || !open_;
-        if (layer.end_contour(closed, 0, limits, position, piece.dropped) && closed && !returns)
-            piece.unclosed.note(position);
+        if (layer.end_contour(closed, 0, limits, position, piece.found) && closed && !returns)
+            piece.found.note(FindingKind::unclosed_rings, position);
     }
 
     [[nodiscard]] double last_top(std::vector<std::string>& warnings) const {

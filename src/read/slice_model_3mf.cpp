@@ -36,18 +36,6 @@ struct SliceText {
 
 namespace {
 
-struct SliceWarnings {
-    CountedWarning open{"contour is open", "contours are open"};
-    ReturningChains returning;
-    DroppedContours dropped;
-
-    void add(const SliceWarnings& later) {
-        open.add(later.open);
-        returning.add(later.returning);
-        dropped.add(later.dropped);
-    }
-};
-
 /// Reads slices of one stack, element by element: those of a parser (ThreeMfElement), and plain ones
 /// (PlainElement). A `where` describes the position of an element. Functions that return false have found an
 /// element that is not plain or breaks a rule, and have changed nothing.
@@ -157,14 +145,14 @@ class SliceReader {
         }
         limits_.give_back(0, more.capacity() * sizeof(Slice));
         more = {};
-        warnings_.add(later.warnings_);
+        found_.add(later.found_);
         vertices_.swap(later.vertices_);
         line_ = later.line_;
         return true;
     }
 
     [[nodiscard]] const std::shared_ptr<SliceStack>& stack() const { return stack_; }
-    [[nodiscard]] const SliceWarnings& warnings() const { return warnings_; }
+    [[nodiscard]] const Findings& found() const { return found_; }
     [[nodiscard]] bool in_polygon() const { return start_.has_value(); }
 
   private:
@@ -217,10 +205,10 @@ class SliceReader {
         const bool returning_chain = last_ != start_ && raw().is_returning_chain();
         const bool closed = last_ == start_ || returning_chain;
         if (returning_chain)
-            warnings_.returning.note(where);
+            found_.note(FindingKind::returning_chains, where);
         else if (!closed)
-            warnings_.open.note(where);
-        raw().end_contour(closed, 0, limits_, where, warnings_.dropped);
+            found_.note(FindingKind::open_polylines, where);
+        raw().end_contour(closed, 0, limits_, where, found_);
         start_.reset();
     }
 
@@ -232,7 +220,7 @@ class SliceReader {
     }
 
     std::shared_ptr<SliceStack> stack_;
-    SliceWarnings warnings_;
+    Findings found_;
     ReadLimits& limits_;
     std::vector<Point2> vertices_;       ///< of the last slice
     std::optional<std::uint32_t> start_; ///< first vertex of the polygon under construction
@@ -328,9 +316,7 @@ class SliceModelReader {
             };
         }
         parse_part(part_, handlers, executor_);
-        warnings_.open.append_to(model_.warnings);
-        warnings_.returning.append_to(model_.warnings);
-        warnings_.dropped.append_to(model_.warnings);
+        append_to(found_, model_.warnings);
         return std::move(model_);
     }
 
@@ -382,7 +368,7 @@ class SliceModelReader {
 
     void end_stack() {
         if (slices_)
-            warnings_.add(slices_->warnings());
+            found_.add(slices_->found());
         slices_.reset();
     }
 
@@ -521,7 +507,7 @@ class SliceModelReader {
     std::size_t depth_ = 0;
     std::size_t stack_depth_ = 0;
     std::optional<SliceReader> slices_; ///< of the stack under construction
-    SliceWarnings warnings_;
+    Findings found_;
     SlicedObject* object_ = nullptr;
     SliceModel model_;
 };

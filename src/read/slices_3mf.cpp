@@ -149,8 +149,7 @@ class PackageReader {
                 fmt::format("{}: found no slice stack in the build; a 3MF file of layers has one for each "
                             "object",
                             zip_.name()));
-        for (const CountedWarning* warning : {&without_slices_, &no_solid_, &not_printed_})
-            warning->append_to(file_.warnings);
+        append_to(found_, file_.warnings);
         make_layers();
     }
 
@@ -245,15 +244,15 @@ class PackageReader {
                                                       "'other' says that it is not to be made",
                                                       zip_.name(), use.line, use.object));
         if (depth == 0 && !use.printable)
-            return not_printed_.note(at_line(use.line));
+            return found_.note(FindingKind::items_not_printed, at_line(use.line));
         if (is_other || type == ThreeMfObjectType::surface)
-            return no_solid_.note(at_line(use.line));
+            return found_.note(FindingKind::no_solids, at_line(use.line));
         const Transform placement = compose(outer, use.placement);
         const bool support =
             in_support || type == ThreeMfObjectType::support || type == ThreeMfObjectType::solid_support;
         if (!object->second.stack) { // an object's own stack replaces those of its components
             if (object->second.components.empty())
-                without_slices_.note(at_line(use.line));
+                found_.note(FindingKind::objects_without_slices, at_line(use.line));
             for (const ThreeMfUse& component : object->second.components)
                 place(model, component, placement, support, depth + 1);
             return;
@@ -454,12 +453,7 @@ class PackageReader {
     std::map<std::string, SliceModel> parts_;  ///< referenced parts
     std::vector<Placed> placed_;
     std::size_t uses_ = 0;
-    CountedWarning without_slices_{"object of the build has no slices; it was left out",
-                                   "objects of the build have no slices; they were left out"};
-    CountedWarning no_solid_{"object is of type surface or other, which is no solid; it was left out",
-                             "objects are of type surface or other, which are no solids; they were left out"};
-    CountedWarning not_printed_{"item is marked in the build as not to be printed; it was left out",
-                                "items are marked in the build as not to be printed; they were left out"};
+    Findings found_;
 };
 
 } // namespace

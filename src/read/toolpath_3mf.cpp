@@ -199,10 +199,9 @@ struct SegmentKind {
 class LayerReader {
   public:
     LayerReader(const std::string& document, const Model& model, const Toolpath& toolpath,
-                PartNumbers<SegmentKind>& kinds, CountedWarning& other_lasers, RawLayer& raw,
-                ReadLimits& limits)
-        : document_(document), model_(model), toolpath_(toolpath), kinds_(kinds), other_lasers_(other_lasers),
-          raw_(raw), limits_(limits), unit_mm_(toolpath.unit * model.unit_mm) {}
+                PartNumbers<SegmentKind>& kinds, Findings& found, RawLayer& raw, ReadLimits& limits)
+        : document_(document), model_(model), toolpath_(toolpath), kinds_(kinds), found_(found), raw_(raw),
+          limits_(limits), unit_mm_(toolpath.unit * model.unit_mm) {}
 
     void start(const ThreeMfElement& element) {
         if (!is_toolpath(element.name.space))
@@ -224,14 +223,14 @@ class LayerReader {
         }
     }
 
-    void end(XmlName name, DroppedContours& dropped) {
+    void end(XmlName name) {
         if (!is_toolpath(name.space) || name.local != "segment")
             return;
         const auto where = [this] {
             return location();
         };
         if (in_contour_)
-            raw_.end_contour(closed_, kind_, limits_, where, dropped);
+            raw_.end_contour(closed_, kind_, limits_, where, found_);
         else if (in_hatches_)
             raw_.end_hatches(kind_, limits_, where);
         in_contour_ = in_hatches_ = false;
@@ -272,7 +271,7 @@ class LayerReader {
                                                     : "a segment of a profile that the model does not have",
                          "one of the model");
         if (known->second.other_laser || is_other_laser(element))
-            other_lasers_.note([this] { return location(); });
+            found_.note(FindingKind::segments_of_lasers, [this] { return location(); });
         const bool says_kind = known->second.says_kind || !known->second.exposure;
         kind_ = kinds_.number_of({item->second.first, known->second.number, !says_kind && in_hatches_},
                                  element.location());
@@ -282,7 +281,7 @@ class LayerReader {
     const Model& model_;
     const Toolpath& toolpath_;
     PartNumbers<SegmentKind>& kinds_;
-    CountedWarning& other_lasers_;
+    Findings& found_;
     RawLayer& raw_;
     ReadLimits& limits_;
     double unit_mm_;
@@ -295,19 +294,13 @@ class LayerReader {
     std::uint32_t kind_ = 0; ///< its number
 };
 
-CountedWarning of_other_lasers() {
-    return {"segment is for another laser than the first; which one was left out",
-            "segments are for another laser than the first; which one was left out"};
-}
-
 /// A toolpath, and the parts of the package with its layers.
 struct ToolpathParts {
     /// One layer.
     struct Piece {
         RawLayer raw;
         PartNumbers<SegmentKind> kinds;
-        CountedWarning other_lasers = of_other_lasers();
-        DroppedContours dropped = {};
+        Findings found = {};
         std::size_t end; ///< number of the next layer
     };
 
@@ -326,12 +319,12 @@ struct ToolpathParts {
         piece.raw.begin = number;
         const ByteSource source = unpack_part(package, layers[number], limits);
         piece.raw.location = source.name;
-        LayerReader reader(source.name, model, toolpath, piece.kinds, piece.other_lasers, piece.raw, limits);
+        LayerReader reader(source.name, model, toolpath, piece.kinds, piece.found, piece.raw, limits);
         parse_part(source,
                    {.start = [&](const ThreeMfElement& element) { reader.start(element); },
                     .end =
                         [&](XmlName element) {
-                            reader.end(element, piece.dropped);
+                            reader.end(element);
                         }},
                    executor);
         return piece;
@@ -370,8 +363,7 @@ class ToolpathReader {
         number_parts(*parts, layers);
         make_layers(parts, layers);
         append_to(names_, file_.warnings);
-        other_lasers_.append_to(file_.warnings);
-        dropped_.append_to(file_.warnings);
+        append_to(found_, file_.warnings);
     }
 
   private:
@@ -423,8 +415,7 @@ class ToolpathReader {
                     kinds_.add(
                         piece.kinds, {&piece.raw, 1}, [](const SegmentKind& kind) { return kind; },
                         [&] { return std::string_view(piece.raw.location); });
-                    other_lasers_.add(piece.other_lasers);
-                    dropped_.add(piece.dropped);
+                    found_.add(piece.found);
                     layers.push_back(std::move(piece.raw));
                 });
         if (error)
@@ -487,8 +478,7 @@ class ToolpathReader {
     Executor executor_;
     PartNumbers<SegmentKind> kinds_;
     DistinctNames names_;
-    CountedWarning other_lasers_ = of_other_lasers();
-    DroppedContours dropped_;
+    Findings found_;
 };
 
 } // namespace

@@ -46,7 +46,7 @@ TEST(RawLayer, EndsContoursWithoutRepeatedPoints) {
     Limited limited;
     for (int round = 0; round < test::rounds_within_reason(1000); ++round) {
         RawLayer layer;
-        DroppedContours dropped;
+        Findings dropped;
         std::uint64_t expected_dropped = 0;
         for (std::int64_t n = random.integer(1, 5); n > 0; --n) {
             const bool closed = random.integer(0, 1) == 0;
@@ -72,7 +72,7 @@ TEST(RawLayer, EndsContoursWithoutRepeatedPoints) {
             EXPECT_EQ(layer.contour_begin(), layer.points.size());
         }
         std::vector<std::string> warnings;
-        dropped.append_to(warnings);
+        append_to(dropped, warnings);
         EXPECT_EQ(warnings.size(), expected_dropped == 0 ? 0U : 1U);
         if (expected_dropped > 1) {
             EXPECT_TRUE(warnings[0].starts_with(std::to_string(expected_dropped) + " contours had too few"));
@@ -86,7 +86,7 @@ TEST(RawLayer, EndsWithItsRunsInTheOrderOfTheFile) {
     for (const KeptPlanes kept : {KeptPlanes::all, KeptPlanes::none}) {
         Limited limited(kept);
         RawLayer layer;
-        DroppedContours dropped;
+        Findings dropped;
         const auto add_contour = [&](bool closed, std::uint32_t part, double x) {
             layer.points.insert(layer.points.end(), {{x, 0}, {x, 1}, {x - 1, 1}});
             layer.end_contour(closed, part, limited.limits, here, dropped);
@@ -134,7 +134,7 @@ TEST(PartNumbers, PutPartsInTheOrderOfTheirKeys) {
         PartNumbers<int> numbers(limited.limits);
         EXPECT_TRUE(numbers.empty());
         RawLayer layer;
-        DroppedContours dropped;
+        Findings dropped;
         std::vector<int> keys;
         for (std::int64_t n = random.integer(1, 12); n > 0; --n) {
             keys.push_back(static_cast<int>(random.integer(-3, 3)));
@@ -166,7 +166,7 @@ TEST(LayerAssembly, StacksLayersWithoutGaps) {
         file.parts.resize(2);
         std::vector<RawLayer> raw;
         std::vector<double> heights;
-        DroppedContours dropped;
+        Findings dropped;
         double z = 1;
         for (int i = 0; i < 20; ++i) {
             z += random.real(0.01, 1);
@@ -219,7 +219,7 @@ TEST(LayerAssembly, SortsLayersAndJoinsThoseOfOneHeight) {
     Random random(584);
     for (int round = 0; round < test::rounds_within_reason(300); ++round) {
         Limited limited;
-        DroppedContours dropped;
+        Findings dropped;
         std::vector<RawLayer> layers;
         std::vector<double> heights;
         for (std::int64_t n = random.integer(0, 8); n > 0; --n) {

@@ -76,6 +76,35 @@ enum class FindingKind : std::uint32_t {
     hidden_hatch_lines,    ///< layers of a page that are shown without their hatches
     thinned_layers,        ///< layers of a page that are shown with fewer points
     flattened_triangles,   ///< triangles of a mesh that lose their area or a corner by rounding
+
+    // Irregularities of a slice file, and how its reader treated them.
+    unclosed_rings,         ///< closed contours without their first point at the end
+    contours_with_gaps,     ///< contours with gaps (SLC)
+    open_polylines,         ///< open contours where a format expects closed ones
+    returning_chains,       ///< open contours that end where they begin
+    reversed_by_direction,  ///< contours that ran against their stated direction
+    outside_outlines,       ///< outlines of SVG outside of layers
+    other_elements,         ///< elements of SVG that are no outlines
+    unfollowed_transforms,  ///< elements of SVG with transforms
+    reversed_by_rule,       ///< contours that ran against their type or fill rule
+    unsorted_rings,         ///< paths with too many rings for their fill rule
+    objects_without_slices, ///< objects of a build without slices
+    no_solids,              ///< objects that are no solids
+    items_not_printed,      ///< items that are not to be printed
+    other_block_counts,     ///< work planes with another number of blocks
+    other_plane_numbers,    ///< work planes whose number does not follow
+    moved_planes,           ///< work planes that are moved or rotated
+    other_vectors,          ///< blocks with vectors that are not read
+    repeated_blocks,        ///< blocks to be executed more than once
+    repeated_planes,        ///< work planes to be executed more than once
+    blocks_of_lasers,       ///< blocks for another laser than the first
+    segments_of_lasers,     ///< segments for another laser than the first
+    unknown_names,          ///< files of an ILT archive whose name says nothing of their vectors
+    halves_of_settings,     ///< files with a speed or a power only
+    pulsed_beams,           ///< files for a pulsed beam
+    unlisted_files,         ///< files that are not in the list of an archive
+    dropped_contours,       ///< contours with too few different points
+    unknown_commands,       ///< commands that are unknown
 };
 
 enum class Severity : std::uint8_t {
@@ -92,6 +121,7 @@ enum class FindingOrigin : std::uint8_t {
     vectors,           ///< found by the check of scan vectors
     layers_or_vectors, ///< found by both checks
     output,            ///< lost on the way to a file
+    input,             ///< an irregularity of a slice file that was read
 };
 
 struct Finding;
@@ -211,9 +241,13 @@ struct Findings {
     /// kind.
     template <class Place>
     void note(FindingKind kind, const Place& place, std::uint64_t count = 1) {
-        const bool first = of(kind, 0).count == 0;
-        add({.kind = kind, .count = count, .place = first ? std::string(place()) : std::string()});
+        if (!count_again(kind, count))
+            add({.kind = kind, .count = count, .place = std::string(place())});
     }
+
+  private:
+    /// Adds to the count of a kind in file 0. Returns false if there is none.
+    bool count_again(FindingKind kind, std::uint64_t count) noexcept;
 };
 
 /// Collects findings on planes, from any threads.
