@@ -265,8 +265,7 @@ int run_verify(const VerifyArguments& arguments, const Context& context) {
                           .tolerance_mm = arguments.tolerance,
                           .max_memory = arguments.limits.max_memory.value_or(0)};
     if (!plain.parts.empty()) {
-        options.hatch_lines = plain.hatch_lines();
-        const Verification found = verify_file(plain, options, execution);
+        const Verification found = verify(plain, options, execution);
         ok = ok && found.ok();
         object.update(verification_json(found));
         const auto disagree = [](const Verification& one) {
@@ -276,7 +275,7 @@ int run_verify(const VerifyArguments& arguments, const Context& context) {
         if (cut_is_assumed && disagree(found))
             hint = cut_hint(plain, [&](const LayerFile& moved, PlaneRule moved_rule) {
                 options.rule = moved_rule;
-                const Verification again = verify_file(moved, options, execution);
+                const Verification again = verify(moved, options, execution);
                 return !disagree(again);
             });
         else if (!areas_agree(found))

@@ -360,12 +360,12 @@ py::dict verified(const Stack& stack, const PlatePointer& plate, const std::stri
         options.steps.fill = fill_rule(fill);
         if (plate)
             set_reference(options, *plate, execution);
-        LayerStack layers = plain(stack.layers);
+        LayerPart all{.layers = plain(stack.layers)};
         for (const LayerPointer& layer : stack.layers)
-            options.hatch_lines += layer->hatches().size() / 2;
+            all.hatches.push_back(layer->hatches());
         if (!at.empty())
-            options.rule = place_cuts(layers, slice_at_named(at));
-        return verify(layers, options, execution);
+            options.rule = place_cuts(all.layers, slice_at_named(at));
+        return verify(source_of({std::move(all)}, stack.path, execution), options, execution);
     });
     py::dict fields;
     fields["ok"] = found.ok();

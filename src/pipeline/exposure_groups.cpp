@@ -15,7 +15,7 @@ namespace lamella {
 namespace {
 
 /// Returns the area within the contours of each part.
-std::vector<double> areas_of(const LayerFile& file, const Execution& execution) {
+std::vector<double> areas_of(const PlaneSource& file, const Execution& execution) {
     std::vector<std::vector<double>> of_planes(file.planes.size());
     file.visit(
         Stage::polygon,
@@ -33,7 +33,7 @@ std::vector<double> areas_of(const LayerFile& file, const Execution& execution) 
 
 } // namespace
 
-std::vector<ExposureGroup> groups_of(const LayerFile& file, bool all_together, const Execution& execution) {
+std::vector<ExposureGroup> groups_of(const PlaneSource& file, bool all_together, const Execution& execution) {
     std::vector<double> areas;
     // Compares contours of one part by number or, since some files do not number them, by area.
     const auto lies_outside = [&](std::size_t part, std::size_t other) {
@@ -61,7 +61,7 @@ std::vector<ExposureGroup> groups_of(const LayerFile& file, bool all_together, c
     return result;
 }
 
-PlaneGroup on_plane(const ExposureGroup& group, const LayerFile& file, const ScanVectors& vectors) {
+PlaneGroup on_plane(const ExposureGroup& group, const PlaneSource& file, const ScanVectors& vectors) {
     PlaneGroup exposures;
     for (const std::size_t i : group.exposures)
         exposures.push_back(

@@ -3,7 +3,7 @@
 // Exposures of a file of scan vectors by part, and the rules of a strategy that apply to them.
 
 #include "lamella/contour/exposure.hpp"
-#include "lamella/read/layer_file.hpp"
+#include "lamella/contour/plane_source.hpp"
 #include "lamella/scan/strategy.hpp"
 
 #include <cstddef>
@@ -21,7 +21,7 @@ struct ExposureGroup {
 
 /// Returns the exposures of each part, or a single group of all parts. Parts of the file that are not scan
 /// vectors are left out. Reads the planes only if contours of a part are not numbered.
-[[nodiscard]] std::vector<ExposureGroup> groups_of(const LayerFile& file, bool all_together,
+[[nodiscard]] std::vector<ExposureGroup> groups_of(const PlaneSource& file, bool all_together,
                                                    const Execution& execution);
 
 /// The vectors of an exposure on a plane.
@@ -36,7 +36,7 @@ struct PlaneExposure {
 using PlaneGroup = std::vector<PlaneExposure>;
 
 /// `vectors` are those of the plane of the file; the result refers to them.
-[[nodiscard]] PlaneGroup on_plane(const ExposureGroup& group, const LayerFile& file,
+[[nodiscard]] PlaneGroup on_plane(const ExposureGroup& group, const PlaneSource& file,
                                   const ScanVectors& vectors);
 
 [[nodiscard]] const ContourRule& contours_of(const ScanStrategy& strategy, ScanRegion region) noexcept;

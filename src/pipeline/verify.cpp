@@ -210,35 +210,20 @@ PlaneRule place_cuts(LayerFile& file, SliceAt at) {
     return place_cuts(file.planes, at);
 }
 
-namespace {
-
-/// Verifies layers. `layer_at(i)` returns one of them, `layers` has at least their heights.
-template <class LayerAt>
-Verification verify_planes(std::span<const Layer> layers, const LayerAt& layer_at,
-                           const VerifyOptions& options, const Execution& execution) {
+Verification verify(const PlaneSource& source, const VerifyOptions& options, const Execution& execution) {
     const AreaFrame frame = options.mesh ? frame_of(*options.mesh, execution) : AreaFrame();
+    const LayerStack& layers = source.planes; // their heights
     std::vector<CheckedLayer> checks(layers.size());
-    Executor executor(execution);
-    const LayerLimits limits = layer_limits(execution, options.max_memory, executor.workers());
-    std::vector<char> unsound(layers.size());
-    ProgressMeter progress(execution, Stage::polygon, layers.size());
-    executor.for_chunks(layers.size(), 1, [&](std::uint64_t i, std::uint64_t, unsigned) {
-        const Layer& layer = layer_at(i);
-        try {
-            check(layer);
-        } catch (const Error&) {
-            unsound[i] = 1;
-            return;
-        }
+    const LayerLimits limits =
+        layer_limits(execution, options.max_memory, thread_count(source.for_planes(execution)));
+    const PlaneVisitor check_plane = [&](std::size_t i, ScanVectors plane, unsigned) {
+        const Layer layer =
+            plane.exposures() == 1 ? std::move(plane.polylines.front()) : merged(plane.polylines);
         checks[i] = {check_layer(layer, options.granted(), limits)};
         if (options.mesh)
             checks[i].own = own_area(layer, checks[i].measure, frame, options);
-        progress.add(1);
-    });
-    for (std::size_t i = 0; i < layers.size(); ++i)
-        if (unsound[i] != 0)
-            check(layer_at(i)); // throws the error of the lowest one
-    progress.finish();
+    };
+    source.visit(Stage::polygon, check_plane, execution);
 
     Verification result;
     result.layers = layers.size();
@@ -254,8 +239,8 @@ Verification verify_planes(std::span<const Layer> layers, const LayerAt& layer_a
     if (!result.open_layers.empty())
         result.findings.add(contour_gaps(result.open_layers));
     add_height_overlaps(result.findings, layers, options.granted());
-    if (options.hatch_lines > 0)
-        result.findings.add({.kind = FindingKind::unchecked_hatch_lines, .count = options.hatch_lines});
+    if (const std::uint64_t lines = source.hatch_lines(); lines > 0)
+        result.findings.add({.kind = FindingKind::unchecked_hatch_lines, .count = lines});
     if (options.mesh) {
         compare_areas(layers, checks, frame.origin, options, execution, result);
         const Plan plan = plan_of(layers, options.rule, options.snap_mm);
@@ -266,21 +251,9 @@ Verification verify_planes(std::span<const Layer> layers, const LayerAt& layer_a
     return result;
 }
 
-} // namespace
-
 Verification verify(std::span<const Layer> layers, const VerifyOptions& options, const Execution& execution) {
-    const auto layer_at = [&](std::size_t i) -> const Layer& {
-        return layers[i];
-    };
-    return verify_planes(layers, layer_at, options, execution);
-}
-
-Verification verify_file(const LayerFile& file, const VerifyOptions& options, const Execution& execution) {
-    const auto layer_at = [&](std::size_t i) {
-        ScanVectors plane = file.plane(i);
-        return plane.exposures() == 1 ? std::move(plane.polylines.front()) : merged(plane.polylines);
-    };
-    return verify_planes(file.planes, layer_at, options, execution);
+    return verify(source_of({LayerStack(layers.begin(), layers.end())}, options.rounding, execution), options,
+                  execution);
 }
 
 } // namespace lamella

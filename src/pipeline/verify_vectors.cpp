@@ -163,7 +163,7 @@ class VectorCheck {
 
 } // namespace
 
-VectorVerification verify_vectors(const LayerFile& file, const VerifyOptions& options,
+VectorVerification verify_vectors(const PlaneSource& file, const VerifyOptions& options,
                                   const Execution& execution) {
     Executor executor(file.for_planes(execution));
     const std::vector<ExposureGroup> groups = groups_of(file, options.mesh.has_value(), execution);

@@ -28,7 +28,7 @@ TEST_F(HeightsOfLayers, ReportWhichPartOfTheMeshTheyCover) {
     EXPECT_NEAR(found.heights->mesh_top, 2, 1e-9);
     EXPECT_TRUE(found.ok()) << "some layers of a job are layers, too";
     EXPECT_FALSE(verify(layers_).heights);
-    EXPECT_FALSE(verify({}, {.mesh = mesh_}).heights);
+    EXPECT_FALSE(verify(LayerStack{}, {.mesh = mesh_}).heights);
 }
 
 TEST_F(HeightsOfLayers, HaveNoGaps) {

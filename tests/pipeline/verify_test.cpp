@@ -65,7 +65,7 @@ TEST(Verify, NamesTheContourOfACoordinateThatIsNoLength) {
 }
 
 TEST(Verify, OfNothingFindsNothing) {
-    const Verification found = verify({});
+    const Verification found = verify(LayerStack{});
     EXPECT_TRUE(found.ok());
     EXPECT_EQ(found.layers, 0U);
 }

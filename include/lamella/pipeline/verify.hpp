@@ -45,8 +45,6 @@ struct VerifyOptions {
     Rounding rounding = {};
     /// Additional tolerance of points, ends of lines and cuts, in mm, for coordinates rounded earlier.
     double tolerance_mm = 0;
-    /// Number of hatch lines of the layers, which `verify` reports as not checked.
-    std::uint64_t hatch_lines = 0;
     /// Strategy by which scan vectors were made. If a strategy is set, vectors must keep its distances from
     /// the edges of the material, hatch lines must be at least `shortest` long, and vectors must reach all of
     /// the material that the strategy does not accept as bare.
@@ -110,15 +108,15 @@ struct Verification {
     [[nodiscard]] bool ok() const noexcept { return findings.first(Severity::defect) == nullptr; }
 };
 
-/// Checks layers in any order. Parallel over layers, with the same result for any number of threads. Throws
-/// Error{usage}, naming layer and contour, for a coordinate that is not finite or beyond 1e100 mm. Expected
-/// O(points + triangles).
-[[nodiscard]] Verification verify(std::span<const Layer> layers, const VerifyOptions& options = {},
+/// Checks the contours of all parts of a source together; planes may have any order. Parallel over planes,
+/// with the same result for any number of threads. Throws the errors of PlaneSource::visit. Expected O(points
+/// + triangles).
+[[nodiscard]] Verification verify(const PlaneSource& source, const VerifyOptions& options = {},
                                   const Execution& execution = {});
 
-/// Verifies all parts of a file together. The layers need not be in memory.
-[[nodiscard]] Verification verify_file(const LayerFile& file, const VerifyOptions& options,
-                                       const Execution& execution = {});
+/// The same for layers in memory. Throws the errors of source_of, too.
+[[nodiscard]] Verification verify(std::span<const Layer> layers, const VerifyOptions& options = {},
+                                  const Execution& execution = {});
 
 struct VectorVerification {
     std::uint64_t layers = 0;
@@ -135,11 +133,10 @@ struct VectorVerification {
     [[nodiscard]] bool ok() const noexcept { return findings.first(Severity::defect) == nullptr; }
 };
 
-/// Checks the parts of a file that have an exposure, and ignores the others. If the layers are not in memory,
-/// all parts must have one. Parallel over layers, with the same result for any number of threads. Throws the
-/// errors of `slice`, `offset` and `check(const LayerFile&)`, and those of `verify` for a coordinate that is
-/// not finite. O(n log n) for n points and vectors of a layer, plus the cost of slicing and offsets.
-[[nodiscard]] VectorVerification verify_vectors(const LayerFile& file, const VerifyOptions& options = {},
+/// Checks the parts of a source that have an exposure, and ignores the others. Parallel over planes, with the
+/// same result for any number of threads. Throws the errors of `slice`, `offset` and PlaneSource::plane. O(n
+/// log n) for n points and vectors of a layer, plus the cost of slicing and offsets.
+[[nodiscard]] VectorVerification verify_vectors(const PlaneSource& source, const VerifyOptions& options = {},
                                                 const Execution& execution = {});
 
 } // namespace lamella
