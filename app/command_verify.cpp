@@ -206,110 +206,127 @@ LayerFile with_kind(const LayerFile& file, bool vectors) {
     return some;
 }
 
-int run_verify(const VerifyArguments& arguments, const Context& context) {
-    if (arguments.mesh.empty() && arguments.placement.given())
+/// Rejects options about a mesh if there is none.
+void check_arguments(const VerifyArguments& arguments) {
+    if (!arguments.mesh.empty())
+        return;
+    if (arguments.placement.given())
         throw Error(ErrorKind::usage,
                     "unit, pose and direction are those of a mesh: name it with --mesh part.stl");
-    if (arguments.mesh.empty() && arguments.snap)
+    if (arguments.snap)
         throw Error(ErrorKind::usage, "--snap says how a mesh is cut: name it with --mesh part.stl");
-    const LayerSteps steps = arguments.making.steps();
-    if (arguments.mesh.empty() && (arguments.repair.change_the_mesh() || arguments.repair.close_gaps_mm))
+    if (arguments.repair.change_the_mesh() || arguments.repair.close_gaps_mm)
         throw Error(ErrorKind::usage,
                     "what was mended is mended in the mesh, too: name it with --mesh part.stl");
-    if (arguments.mesh.empty() && steps.any())
+    if (arguments.making.steps().any())
         throw Error(ErrorKind::usage, "what was made of the layers is checked against a mesh: name it with "
                                       "--mesh part.stl");
-    const Transform pose = arguments.placement.pose();
+}
+
+/// Reads the mesh with which the file is compared, if there is one.
+void read_mesh_into(VerifyOptions& options, const VerifyArguments& arguments, std::uint64_t held,
+                    Messages& messages, const Execution& execution) {
+    if (arguments.mesh.empty())
+        return;
+    const std::array inputs{PlateInput{.path = arguments.mesh,
+                                       .unit_mm = arguments.placement.unit_mm(),
+                                       .placement = arguments.placement.pose()}};
+    Plate plate = load_plate(inputs, arguments.limits.of_meshes(held), execution);
+    messages.warn_of(input_name(arguments.mesh), plate.files.front().warnings);
+    constexpr std::uint64_t bytes_per_triangle = 64; // for joining all parts into one mesh
+    if (plate.parts.size() > 1)
+        check_memory(plate, bytes_per_triangle, options.max_memory, held);
+    options.plate = repaired(std::move(plate), arguments.repair, execution).plate;
+    options.mesh = joined(*options.plate, execution);
+}
+
+/// The result of the command.
+struct Report {
+    Json object;
+    std::string text = {};
+    bool ok = true;
+};
+
+/// Checks contours. If they differ from a mesh, and their cuts are only assumed, tries other cuts.
+void report_layers(Report& report, const LayerFile& plain, VerifyOptions options, const std::string& mesh,
+                   bool cut_is_assumed, const Execution& execution) {
+    const Verification found = verify(plain, options, execution);
+    report.ok = report.ok && found.ok();
+    report.object.update(verification_json(found));
+    const auto disagree = [](const Verification& one) {
+        return !areas_agree(one) || one.findings.count(FindingKind::displaced_layers) > 0;
+    };
+    std::string hint;
+    if (cut_is_assumed && disagree(found))
+        hint = cut_hint(plain, [&](const LayerFile& moved, PlaneRule rule) {
+            options.rule = rule;
+            return !disagree(verify(moved, options, execution));
+        });
+    else if (!areas_agree(found))
+        hint = "layers that were rounded before may be off by more: say by how much with --tolerance MM";
+    if (!hint.empty())
+        report.object["hint"] = hint;
+    report.text += verification_text(mesh, found, hint);
+}
+
+/// Does so for scan vectors.
+void report_vectors(Report& report, const LayerFile& vectors, VerifyOptions options, const std::string& mesh,
+                    bool cut_is_assumed, const Execution& execution) {
+    const VectorVerification found = verify_vectors(vectors, options, execution);
+    report.ok = report.ok && found.ok();
+    report.object["vectors"] = vectors_json(options.strategy.has_value(), found);
+    const auto disagree = [](const VectorVerification& one) {
+        return one.findings.count(FindingKind::outside_vectors) > 0 ||
+               one.findings.count(FindingKind::misplaced_vectors) > 0 ||
+               one.findings.count(FindingKind::unreached_layers) > 0;
+    };
+    std::string hint;
+    if (cut_is_assumed && disagree(found))
+        hint = cut_hint(vectors, [&](const LayerFile& moved, PlaneRule rule) {
+            options.rule = rule;
+            return !disagree(verify_vectors(moved, options, execution));
+        });
+    if (!hint.empty())
+        report.object["vectors"]["hint"] = hint;
+    report.text += vectors_text(mesh, options.strategy.has_value(), found, hint);
+}
+
+int run_verify(const VerifyArguments& arguments, const Context& context) {
+    check_arguments(arguments);
     const Execution execution = arguments.run.execution(context);
     arguments.limits.prepare_memory();
-
     LayerFile file = read_layers(arguments.input, arguments.limits.of_layers(), execution);
     for (std::string& warning : file.warnings)
         warning = with_options(std::move(warning));
-    std::optional<ScanStrategy> strategy;
-    if (arguments.scan || arguments.scanning.given())
-        strategy = arguments.scanning.strategy();
-    const PlaneRule rule =
-        arguments.slice_at.empty() ? file.rule : place_cuts(file, slice_at_named(arguments.slice_at));
-    context.messages.warn_of(input_name(file.path), file.warnings);
-    std::optional<Plate> plate;
-    std::optional<Mesh> mesh;
-    if (!arguments.mesh.empty()) {
-        const std::array inputs{
-            PlateInput{.path = arguments.mesh, .unit_mm = arguments.placement.unit_mm(), .placement = pose}};
-        plate = load_plate(inputs, arguments.limits.of_meshes(file.bytes), execution);
-        context.messages.warn_of(input_name(arguments.mesh), plate->files.front().warnings);
-        constexpr std::uint64_t bytes_per_triangle = 64; // for joining all parts into one mesh
-        if (plate->parts.size() > 1)
-            check_memory(*plate, bytes_per_triangle, arguments.limits.max_memory.value_or(0), file.bytes);
-        plate = repaired(std::move(*plate), arguments.repair, execution).plate;
-        mesh = joined(*plate, execution);
-    }
-
-    const LayerFile plain = with_kind(file, false);
-    const LayerFile vectors = with_kind(file, true);
-    const bool cut_is_assumed = mesh && arguments.slice_at.empty() && !layer_format(file.format, {}).cuts;
-    bool ok = !arguments.strict || file.warnings.empty();
-    Json object{{"path", arguments.input}, {"ok", ok}, {"warnings", file.warnings}};
-    std::string text;
-    if (arguments.strict)
-        for (const std::string& warning : file.warnings)
-            text += fmt::format("  {}\n", one_line(warning));
-    VerifyOptions options{.mesh = std::move(mesh),
-                          .plate = std::move(plate),
-                          .rule = rule,
-                          .snap_mm = arguments.snap.value_or(0),
+    VerifyOptions options{.snap_mm = arguments.snap.value_or(0),
                           .close_gaps_mm = arguments.repair.close_gaps_mm,
-                          .steps = steps,
+                          .steps = arguments.making.steps(),
                           .rounding = file.rounding,
                           .tolerance_mm = arguments.tolerance,
                           .max_memory = arguments.limits.max_memory.value_or(0)};
-    if (!plain.parts.empty()) {
-        const Verification found = verify(plain, options, execution);
-        ok = ok && found.ok();
-        object.update(verification_json(found));
-        const auto disagree = [](const Verification& one) {
-            return !areas_agree(one) || one.findings.count(FindingKind::displaced_layers) > 0;
-        };
-        std::string hint;
-        if (cut_is_assumed && disagree(found))
-            hint = cut_hint(plain, [&](const LayerFile& moved, PlaneRule moved_rule) {
-                options.rule = moved_rule;
-                const Verification again = verify(moved, options, execution);
-                return !disagree(again);
-            });
-        else if (!areas_agree(found))
-            hint = "layers that were rounded before may be off by more: say by how much with --tolerance MM";
-        if (!hint.empty())
-            object["hint"] = hint;
-        text += verification_text(arguments.mesh, found, hint);
-    }
-    if (strategy || !vectors.parts.empty()) {
-        options.strategy = strategy;
-        options.rule = rule;
-        const VectorVerification found = verify_vectors(vectors, options, execution);
-        ok = ok && found.ok();
-        object["vectors"] = vectors_json(strategy.has_value(), found);
-        const auto disagree = [](const VectorVerification& one) {
-            return one.findings.count(FindingKind::outside_vectors) > 0 ||
-                   one.findings.count(FindingKind::misplaced_vectors) > 0 ||
-                   one.findings.count(FindingKind::unreached_layers) > 0;
-        };
-        std::string hint;
-        if (cut_is_assumed && disagree(found))
-            hint = cut_hint(vectors, [&](const LayerFile& moved, PlaneRule moved_rule) {
-                options.rule = moved_rule;
-                return !disagree(verify_vectors(moved, options, execution));
-            });
-        if (!hint.empty())
-            object["vectors"]["hint"] = hint;
-        text += vectors_text(arguments.mesh, strategy.has_value(), found, hint);
-    }
-    object["ok"] = ok;
-    context.messages.result(arguments.json
-                                ? json_text(object)
-                                : fmt::format("{}: {}\n{}", one_line(file.path), ok ? "ok" : "NOT ok", text));
-    if (!ok)
+    if (arguments.scan || arguments.scanning.given())
+        options.strategy = arguments.scanning.strategy();
+    options.rule =
+        arguments.slice_at.empty() ? file.rule : place_cuts(file, slice_at_named(arguments.slice_at));
+    context.messages.warn_of(input_name(file.path), file.warnings);
+    read_mesh_into(options, arguments, file.bytes, context.messages, execution);
+    const bool cut_is_assumed =
+        options.mesh && arguments.slice_at.empty() && !layer_format(file.format, {}).cuts;
+
+    Report report{.object = {{"path", arguments.input}, {"ok", true}, {"warnings", file.warnings}},
+                  .ok = !arguments.strict || file.warnings.empty()};
+    if (arguments.strict)
+        for (const std::string& warning : file.warnings)
+            report.text += fmt::format("  {}\n", one_line(warning));
+    if (const LayerFile plain = with_kind(file, false); !plain.parts.empty())
+        report_layers(report, plain, options, arguments.mesh, cut_is_assumed, execution);
+    if (const LayerFile vectors = with_kind(file, true); options.strategy || !vectors.parts.empty())
+        report_vectors(report, vectors, options, arguments.mesh, cut_is_assumed, execution);
+    report.object["ok"] = report.ok;
+    context.messages.result(arguments.json ? json_text(report.object)
+                                           : fmt::format("{}: {}\n{}", one_line(file.path),
+                                                         report.ok ? "ok" : "NOT ok", report.text));
+    if (!report.ok)
         throw Error(ErrorKind::defect, fmt::format("{}: the check failed", file.path));
     return 0;
 }

@@ -344,73 +344,10 @@ ScanVectors joined_plane(const std::vector<JoinedFile>& files, std::size_t plane
     return vectors;
 }
 
-} // namespace
-
-bool is_ilt(const ZipReader& zip) {
-    return zip.find(ilt_parameters) != nullptr;
-}
-
-LayerFile read_ilt(const ZipReader& zip, ReadLimits& limits, const Execution& execution) {
-    const ByteSource list = unpacked_entry(zip, *zip.find(ilt_parameters), limits);
-    std::vector<CommonLayerContent> contents;
-    LayerFile result = layer_file(zip.name(), "ilt");
-    result.warnings = zip.counted_warnings();
-    std::uint64_t bytes = 0;
-    std::vector<std::string> sections; // of `contents`
-    std::vector<ByteSource> sources;   // likewise; layers that are parsed again refer to their bytes
-    std::set<const ZipEntry*> known;
-    Findings found;
-    const std::string_view text = list.text().substr(after_byte_order_mark(list.text()));
-    for (const Section& section : read_parameters(text, list.name, limits)) {
-        const ZipEntry* const entry = zip.find(section.name);
-        if (entry == nullptr)
-            throw Error(ErrorKind::input,
-                        fmt::format("{}, line {}: found parameters of '{}'; the archive has no such file",
-                                    list.name, section.line, excerpt(section.name)));
-        if (!known.insert(entry).second)
-            throw Error(
-                ErrorKind::input,
-                fmt::format("{}, line {}: found parameters of '{}' a second time; there must be one list "
-                            "for each file",
-                            list.name, section.line, excerpt(section.name)));
-        if (section.pulsed)
-            found.note(FindingKind::pulsed_beams, at_line(section.line));
-        if (section.has_speed != section.has_power)
-            found.note(FindingKind::halves_of_settings, at_line(section.line));
-        sources.push_back(unpacked_entry(zip, *entry, limits));
-        const ByteSource& source = sources.back();
-        bytes += source.bytes.size();
-        if (!is_common_layer(source.text()))
-            throw Error(
-                ErrorKind::input,
-                fmt::format("{}: found no Common Layer Interface header ($$HEADERSTART); files of this "
-                            "archive must have one",
-                            source.name));
-        contents.push_back(read_common_layer_content(
-            source.text(), source.name,
-            [&](std::string_view label, VectorKind held) { return exposure_of(section, label, held, found); },
-            limits, execution));
-        if (limits.in_memory())
-            sources.back() = {};
-        sections.push_back(section.name);
-    }
-    if (contents.empty())
-        throw Error(ErrorKind::input,
-                    fmt::format("{}: found parameters of no file; there must be one at least", list.name));
-    // The heights of all files together decide whether they are tops or bottoms of layers.
-    const std::vector<double> bottoms = bottoms_of(contents, ilt_one_plane_mm, limits);
-    std::vector<LayerFile> files;
-    for (std::size_t i = 0; i < contents.size(); ++i) {
-        files.push_back(layers_of(std::move(contents[i]), bottoms, limits, execution));
-        for (const std::string& warning : files.back().warnings)
-            result.warnings.push_back(fmt::format("{}: {}", sections[i], warning));
-    }
-    report_unlisted(zip, known, found);
-    append_to(found, result.warnings);
-    result.units_mm = files.front().units_mm;
-    result.rounding = files.front().rounding;
-    for (const LayerFile& file : files)
-        result.rounding.step_mm = std::min(result.rounding.step_mm, file.rounding.step_mm);
+/// Gives the result the parts of all files, on the planes of all of them. Layers that are parsed again refer
+/// to the sources, of which the archive has this many bytes.
+void join(LayerFile& result, std::vector<LayerFile> files, std::vector<ByteSource> sources,
+          std::uint64_t bytes, ReadLimits& limits) {
     result.planes = planes_of(files, limits);
     result.contents.resize(result.planes.size());
     std::vector<JoinedFile> joined;
@@ -452,6 +389,73 @@ LayerFile read_ilt(const ZipReader& zip, ReadLimits& limits, const Execution& ex
         [joined = std::make_shared<const std::vector<JoinedFile>>(std::move(joined))](std::size_t plane) {
             return joined_plane(*joined, plane);
         };
+}
+
+} // namespace
+
+bool is_ilt(const ZipReader& zip) {
+    return zip.find(ilt_parameters) != nullptr;
+}
+
+LayerFile read_ilt(const ZipReader& zip, ReadLimits& limits, const Execution& execution) {
+    const ByteSource list = unpacked_entry(zip, *zip.find(ilt_parameters), limits);
+    std::vector<CommonLayerContent> contents;
+    LayerFile result = layer_file(zip.name(), "ilt");
+    result.warnings = zip.counted_warnings();
+    std::uint64_t bytes = 0;
+    std::vector<std::string> sections; // of `contents`
+    std::vector<ByteSource> sources;   // likewise; layers that are parsed again refer to their bytes
+    std::set<const ZipEntry*> known;
+    Findings found;
+    const std::string_view text = list.text().substr(after_byte_order_mark(list.text()));
+    for (const Section& section : read_parameters(text, list.name, limits)) {
+        const ZipEntry* const entry = zip.find(section.name);
+        if (entry == nullptr || !known.insert(entry).second)
+            throw Error(ErrorKind::input,
+                        fmt::format("{}, line {}: found parameters of '{}'{}", list.name, section.line,
+                                    excerpt(section.name),
+                                    entry == nullptr
+                                        ? "; the archive has no such file"
+                                        : " a second time; there must be one list for each file"));
+        if (section.pulsed)
+            found.note(FindingKind::pulsed_beams, at_line(section.line));
+        if (section.has_speed != section.has_power)
+            found.note(FindingKind::halves_of_settings, at_line(section.line));
+        sources.push_back(unpacked_entry(zip, *entry, limits));
+        const ByteSource& source = sources.back();
+        bytes += source.bytes.size();
+        if (!is_common_layer(source.text()))
+            throw Error(
+                ErrorKind::input,
+                fmt::format("{}: found no Common Layer Interface header ($$HEADERSTART); files of this "
+                            "archive must have one",
+                            source.name));
+        contents.push_back(read_common_layer_content(
+            source.text(), source.name,
+            [&](std::string_view label, VectorKind held) { return exposure_of(section, label, held, found); },
+            limits, execution));
+        if (limits.in_memory())
+            sources.back() = {};
+        sections.push_back(section.name);
+    }
+    if (contents.empty())
+        throw Error(ErrorKind::input,
+                    fmt::format("{}: found parameters of no file; there must be one at least", list.name));
+    // The heights of all files together decide whether they are tops or bottoms of layers.
+    const std::vector<double> bottoms = bottoms_of(contents, ilt_one_plane_mm, limits);
+    std::vector<LayerFile> files;
+    for (std::size_t i = 0; i < contents.size(); ++i) {
+        files.push_back(layers_of(std::move(contents[i]), bottoms, limits, execution));
+        for (const std::string& warning : files.back().warnings)
+            result.warnings.push_back(fmt::format("{}: {}", sections[i], warning));
+    }
+    report_unlisted(zip, known, found);
+    append_to(found, result.warnings);
+    result.units_mm = files.front().units_mm;
+    result.rounding = files.front().rounding;
+    for (const LayerFile& file : files)
+        result.rounding.step_mm = std::min(result.rounding.step_mm, file.rounding.step_mm);
+    join(result, std::move(files), std::move(sources), bytes, limits);
     return result;
 }
 
