@@ -1,7 +1,7 @@
 #pragma once
 
-// What each source adds to the extension. The order in module.cpp matters: a class comes before those that
-// use it.
+// The functions by which sources add to the extension. Their order in module.cpp matters: a class comes
+// before those that use it.
 
 #include "shared_layer.hpp"
 

@@ -11,6 +11,16 @@
 
 namespace lamella {
 
+/// Elements that one thread reads.
+struct ElementRun {
+    std::size_t begin;
+    std::size_t end;
+    std::size_t count;
+    std::size_t first = 0;
+    std::size_t read = 0;
+    std::size_t stop = 0; ///< where reading ended
+};
+
 namespace {
 
 /// A window of the text.
@@ -62,16 +72,6 @@ std::vector<Window> windows_of(std::string_view text, std::size_t position, cons
     }
     return {};
 }
-
-/// Elements that one thread reads.
-struct ElementRun {
-    std::size_t begin;
-    std::size_t end;
-    std::size_t count;
-    std::size_t first = 0;
-    std::size_t read = 0;
-    std::size_t stop = 0; ///< where reading ended
-};
 
 /// Divides the windows into runs of whole elements, `most` of them in all.
 std::vector<ElementRun> runs_of(const std::vector<Window>& windows, std::size_t most) {

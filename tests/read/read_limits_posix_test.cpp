@@ -199,7 +199,7 @@ TEST_F(LimitsOfReading, Of3mfCountEachTriangleOnceHoweverItIsWritten) {
     EXPECT_EQ(answer(plain, 5000), "5000");
     EXPECT_EQ(answer(plain, 4999),
               ": holds more than the 4999 triangles of `max_triangles` (counted up to part "
-              "'3D/3dmodel.model', line 3)");
+              "'3D/3dmodel.model', line 5006)");
     EXPECT_EQ(answer(plain + small + odd, 12010).substr(0, 5), "12010");
     const std::string refused = answer(plain + small + odd, 12009);
     EXPECT_NE(refused.find("`max_triangles` (counted up to part '3D/3dmodel.model', line "),
