@@ -2,7 +2,8 @@
 
 // Scans plain XML: tags whose attributes are printable ASCII without references, with only blanks between the
 // tags. Everything accepted here is well-formed, and a parser would read it in the same way. Where the text
-// is not plain, the cursor stays before the tag, and the parser continues there (see XmlHandlers::skim).
+// is not plain, `scan` puts the cursor back before the tag, and the parser continues there (see
+// XmlHandlers::skim). Callers of the other functions must do this themselves.
 
 #include <algorithm>
 #include <array>
@@ -18,10 +19,10 @@
 
 namespace lamella {
 
-/// The end of a tag: that of a whole element, or of its start tag; `none` if the tag is not plain.
+/// The way in which a tag ends: `element` by "/>", `start_tag` by ">"; `none` if the tag is not plain.
 enum class XmlTagEnd { none, element, start_tag };
 
-/// Returns whether short names are equal, without the call of a function that takes most of the time.
+/// Returns whether short names are equal. A call of memcmp would take most of the time.
 [[nodiscard]] constexpr bool same_name(std::string_view a, std::string_view b) noexcept {
     if (a.size() != b.size())
         return false;
@@ -48,8 +49,8 @@ class XmlCursor {
     [[nodiscard]] const char* end() const noexcept { return end_; }
     [[nodiscard]] std::span<const std::string> prefixes() const noexcept { return prefixes_; }
 
-    /// Moves to a position, which other cursors have reached. `lines` is the number of line ends up to there,
-    /// if it is known.
+    /// Moves to a position, which other cursors have reached. `lines` is the number of line ends
+    /// between the position where the cursor began and this one, if it is known.
     void move_to(std::size_t position, std::optional<std::uint64_t> lines = {}) noexcept {
         at_ = text_.data() + position;
         lines_ = lines;
@@ -158,8 +159,8 @@ class XmlCursor {
     }
 
   private:
-    /// Reads a tag with the attributes `names` alone, in this order, written as usual, which takes half the
-    /// time. Stays where it is if the tag is not of this form.
+    /// Reads a tag with the attributes `names` alone, in this order, in the usual form. This takes half the
+    /// time of the general loop. Stays where it is if the tag is not of this form.
     template <std::size_t count, class Read>
     XmlTagEnd take_usual_attributes(const std::array<std::string_view, count>& names, const Read& read) {
         const char* at = at_;

@@ -17,7 +17,7 @@
 
 namespace lamella {
 
-/// Communication of processes that fail together. In every message, a process also reports that it has not
+/// Communication of processes that fail together. With every message, all processes report whether they have
 /// failed. One that fails reports its error in place of its next message, so all others throw this error,
 /// too, instead of waiting for it. All processes must call the same functions in the same order until one
 /// fails.
@@ -61,8 +61,8 @@ class Agreement {
         return received;
     }
 
-    /// Returns the result of the whole work of this process. If it throws on some processes, it throws the
-    /// same Error on all of them.
+    /// Calls work() once, around everything that a process does, and returns its result. If work() throws on
+    /// any process, run() throws the same Error on all of them.
     template <class Work>
     auto run(const Work& work) {
         try {

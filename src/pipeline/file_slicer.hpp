@@ -31,13 +31,13 @@ struct PreparedMeshes {
     double seconds = 0; ///< without computing the volume
 };
 
-/// A job at work. Its steps are, in this order: the constructor, which reads or measures the meshes and plans
-/// the layers; `slice`, with an output opened for `files` and `info`; and `finish`. They throw the errors of
-/// slice_file.
+/// Does a slicing job step by step, in this order: the constructor, which reads or measures the meshes and
+/// plans the layers; `slice`, with an output opened for `files` and `info`; and `finish`. They throw the
+/// errors of slice_file.
 class FileSlicer {
   public:
-    /// `process` is the share of the planes that this process slices, unless the job has a shard. The job
-    /// must outlive this object.
+    /// `shared`, if set, shares the reading with other processes. `process` is the shard of this process; it
+    /// is ignored if the job itself has a shard. The job must outlive this object.
     FileSlicer(const FileJob& job, const Execution& execution, SharedReading* shared = nullptr,
                const Shard& process = {});
     /// Takes a plate that is already in memory.
@@ -55,7 +55,8 @@ class FileSlicer {
     /// Slices the planes of this process. The output must exist until `finish`.
     void slice(JobOutput& output);
 
-    /// Moves the figures of the sliced planes to a message, for `add` of each process that shares the job.
+    /// Moves the figures of the sliced planes to a message. Each process then passes the messages of all
+    /// processes to `add`, those of the lowest planes first.
     void move_to(Packer& message);
     /// Adds the figures of planes above those added before. Counts become sums and times the longest times,
     /// because processes work at the same time.

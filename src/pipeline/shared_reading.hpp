@@ -1,6 +1,6 @@
 #pragma once
 
-// Reading of files by several processes, each of which reads a part of every file.
+// Reading of binary STL files by several processes, each of which reads a part of every file.
 
 #include "lamella/core/point.hpp"
 #include "lamella/mesh/triangle_soup.hpp"

@@ -52,7 +52,7 @@ class SharedWriter final : public LayerWriter {
     std::string working_path_;
     LayerFileChunk chunk_;
     std::unique_ptr<LayerWriter>
-        writer_;                         ///< of the file or of this process's range; null if process 0 writes
+        writer_; ///< of the file or of this process's range; null on others if process 0 writes all layers
     ByteStore waiting_;                  ///< the range's bytes, or layers for process 0
     std::vector<std::uint64_t> batches_; ///< sizes of the messages to process 0
     std::uint64_t bytes_ = 0;

@@ -1,6 +1,6 @@
 #pragma once
 
-// Reads the layers of a slice file on all threads, and makes planes of them that may be parsed again.
+// Reads the pieces of a slice file on all threads, and can parse single layers again later.
 //
 // A format divides the file into pieces, parses them, and says at which heights their layers are; the rest is
 // the same for all formats.

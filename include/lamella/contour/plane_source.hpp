@@ -61,8 +61,8 @@ using PlaneVisitor = std::function<void(std::size_t position, ScanVectors plane,
 
 /// Planes whose contents are made when they are needed.
 struct PlaneSource {
-    std::string path = {};                   ///< of the file, for errors; may be ""
-    LayerStack planes = {};                  ///< index and heights of each plane, ascending, without contours
+    std::string path = {};  ///< of the file, for errors; may be ""
+    LayerStack planes = {}; ///< index and heights of each plane, without contours; those of a file ascend
     std::vector<PartInfo> parts = {};        ///< at least one if there are planes; labels may be ""
     std::vector<PlaneContent> contents = {}; ///< of each plane; empty if they are unknown
     Rounding rounding = {};                  ///< of coordinates and heights
@@ -88,8 +88,9 @@ struct PlaneSource {
     /// (see Commit). Each thread holds one plane. Reports the progress of this stage. Throws the errors of
     /// `plane` and of the sink, and Error{cancelled}.
     void run(Stage stage, const PlaneSink& sink, const Execution& execution = {}) const;
-    /// Passes all planes to `visit`, on all threads and in any order, with the number of the thread.
-    void visit(Stage stage, const PlaneVisitor& visit, const Execution& execution = {}) const;
+    /// Passes all planes to `visitor`, on all threads and in any order, with the number of the thread. Throws
+    /// the errors of `plane` and of the visitor, and Error{cancelled}.
+    void visit(Stage stage, const PlaneVisitor& visitor, const Execution& execution = {}) const;
 
     /// Returns the number of hatch lines of all parts. O(parts).
     [[nodiscard]] std::uint64_t hatch_lines() const noexcept;
@@ -101,17 +102,17 @@ struct PlaneSource {
     /// contours of all parts. O(points), parallel. Throws the errors of `plane`, and Error{cancelled}.
     [[nodiscard]] LayerStack merged(const Execution& execution = {.threads = 1}) const;
 
-    /// Returns `execution` with no more threads than there may be planes in memory at the same time, but at
-    /// least one.
+    /// Returns `execution` with at most as many threads as planes fit into `spare_bytes`, and at least one.
     [[nodiscard]] Execution for_planes(const Execution& execution) const;
 };
 
 /// Returns a source of layers in memory. `path` is a name for errors. O(points), parallel. Throws
-/// Error{usage} if the parts have not the same number of layers, or if a layer does not pass `check`.
+/// Error{usage} if the parts do not have the same planes (number, indices and heights), if a part has hatch
+/// lines for another number of layers, or if a plane does not pass `check`.
 [[nodiscard]] PlaneSource source_of(std::vector<LayerPart> parts, std::string path = {},
                                     const Execution& execution = {.threads = 1});
 
-/// Returns a source of the layers of parts that have no label.
+/// Returns a source of these stacks, each as one part without a label.
 [[nodiscard]] PlaneSource source_of(std::vector<LayerStack> parts, const Rounding& rounding = {},
                                     const Execution& execution = {.threads = 1});
 

@@ -24,7 +24,7 @@ enum class FindingKind : std::uint32_t {
 
     // Found by checks of layers and scan vectors.
     open_contours,         ///< contours that are not closed
-    contour_gaps,          ///< between the ends of these
+    contour_gaps,          ///< gaps between the ends of open contours
     crossings,             ///< pairs of segments that cross properly; touching is allowed
     misoriented_rings,     ///< clockwise rings outside of material
     tangled_rings,         ///< rings of positive area that bound no material
@@ -32,11 +32,11 @@ enum class FindingKind : std::uint32_t {
     outside_vectors,       ///< vectors that leave the material
     misplaced_vectors,     ///< vectors nearer to its edges than the strategy allows, or outside
     short_lines,           ///< hatch lines below `shortest`
-    unreached_layers,      ///< planes with more material that no vector reaches than the strategy accepts
-    rings_without_vectors, ///< rings of the mesh's sections that bound no material (see inverted_rings)
+    unreached_layers,      ///< planes where the material without vectors is more than the strategy accepts
+    rings_without_vectors, ///< rings of the mesh's sections that bound no material and so get no vectors
     no_vectors,            ///< there is a strategy but no vector
     height_overlaps,       ///< layers that begin within the height of another one
-    unchecked_hatch_lines, ///< lines without scan vectors' contours, which are not checked
+    unchecked_hatch_lines, ///< lines that are not checked, because no contour bounds their area
     uncompared_layers,     ///< layers that are not compared with the mesh, because contours are open
     other_areas,           ///< layers whose area differs from that of the mesh's section
     displaced_layers,      ///< layers whose area agrees but whose centroid differs
@@ -51,7 +51,7 @@ enum class FindingKind : std::uint32_t {
     replaced_hatch_lines, ///< lines of a slice file that new ones replace
     outdated_hatch_lines, ///< lines of a slice file whose contours were changed
     nothing_left,         ///< no contour is left after the steps
-    no_contours,          ///< no layer has a contour, for another reason
+    no_contours,          ///< no layer has a contour, although no step removed them
     unreached_material,   ///< material that no scan vector reaches
     overlapping_parts,    ///< material of several parts, which scan vectors expose several times
 
@@ -92,7 +92,7 @@ enum class FindingKind : std::uint32_t {
     no_solids,              ///< objects that are no solids
     items_not_printed,      ///< items that are not to be printed
     other_block_counts,     ///< work planes with another number of blocks
-    other_plane_numbers,    ///< work planes whose number does not follow
+    other_plane_numbers,    ///< work planes whose number is not the one after the previous number
     moved_planes,           ///< work planes that are moved or rotated
     other_vectors,          ///< blocks with vectors that are not read
     repeated_blocks,        ///< blocks to be executed more than once
@@ -127,9 +127,9 @@ enum class FindingOrigin : std::uint8_t {
 struct Finding;
 
 /// A row of the table of findings. Texts are templates of {fmt} with these fields: `{count}`, `{amount}`,
-/// `{largest}` (numbers of the finding), `{or_more}` ("or more ..., " if Finding::or_more), `{place}` (see
-/// Finding), `{where}` ("in 3 of 20 layers, first at z = 0.25 mm"), `{on_layers}` ("on 3 layers, the lowest
-/// at z = 0.25 mm"), `{layers}` ("20 layers": all of them),
+/// `{largest}`, `{first_layer}` (numbers of the finding), `{z}` (Finding::first_z), `{or_more}` (a clause if
+/// Finding::or_more), `{place}` (see Finding), `{where}` ("in 3 of 20 layers, first at z = 0.25 mm"),
+/// `{on_layers}` ("on 3 layers, the lowest at z = 0.25 mm"), `{layers}` ("20 layers": all of them),
 /// `{affected}` (the number of layers with the finding), and `{cure}`, the text of the function `cure`.
 struct FindingDescription {
     FindingKind kind = {};
@@ -225,15 +225,16 @@ struct Findings {
     /// Returns the finding of a kind in a file; its count is 0 if there is none.
     [[nodiscard]] const Finding& of(FindingKind kind, std::uint32_t file) const noexcept;
     [[nodiscard]] std::uint64_t count(FindingKind kind) const noexcept { return of(kind).count; }
-    /// Returns the first finding that is at least as severe; null if there is none.
+    /// Returns the first finding whose severity is at least `least`; null if there is none.
     [[nodiscard]] const Finding* first(Severity least) const noexcept;
     /// Returns the numbers of all kinds of a check, `layers` or `vectors`, that have keys, in the order of
     /// the table. Kinds with the same key are added up; numbers of kinds that were not found are 0.
     [[nodiscard]] std::vector<FindingNumber> numbers(FindingOrigin check) const;
     /// Returns a line for each finding, without the names of files.
     [[nodiscard]] std::vector<std::string> texts() const;
-    /// Adds a finding, also to the total of its kind. If there is one of its kind, file and entries, the
-    /// numbers are added up, and this one must be about later layers, or a later range of the file.
+    /// Adds a finding, also to the total of its kind. If there already is a finding of this kind, file and
+    /// entries, adds the numbers to it. The added finding must then be about later layers, or a later range
+    /// of the file.
     void add(Finding finding);
     /// Adds the findings of other files, or of later layers or ranges.
     void add(const Findings& others);

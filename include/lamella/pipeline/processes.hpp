@@ -43,15 +43,16 @@ class Communicator {
                           std::span<const std::span<std::byte>> incoming) = 0;
 };
 
-/// Slices a job as slice_file does, together with other processes: all of them call this function with the
-/// same job. The file is, byte for byte, the one that a single process writes. Each process returns the
-/// result of the whole job, in which each time is the longest over all processes.
+/// Slices a job like the function slice_file without processes, but together with other processes: all of
+/// them call this function with the same job. The file is, byte for byte, the one that a single process
+/// writes. Each process returns the result of the whole job, in which each time is the longest over all
+/// processes.
 ///
 /// Each process slices a range of planes of about equal work, as if it were a shard. It reads a part of each
 /// binary STL file. If a file is not binary STL, or if the job needs whole meshes (see FileJob::max_memory),
 /// each process reads all files completely. If the format has LayerFormat::chunks, each process writes its
-/// layers to its part of the file, which must be on a shared file system. For other formats and for standard
-/// output, layers are sent to process 0, which writes them.
+/// layers to its part of the file, which must be on a shared file system. For other formats, standard output
+/// and outputs that are no regular files, layers are sent to process 0, which writes them.
 ///
 /// If one process throws an error, all of them throw it. With several processes, a shard, a page, and
 /// standard input (which only one process could read) are Error{usage}.

@@ -108,8 +108,9 @@ struct Verification {
     [[nodiscard]] bool ok() const noexcept { return findings.first(Severity::defect) == nullptr; }
 };
 
-/// Checks the contours of all parts of a source together; planes may have any order. Parallel over planes,
-/// with the same result for any number of threads. Throws the errors of PlaneSource::visit. Expected O(points
+/// Checks the contours of all parts of a source together; the planes may be in any order. Parallel over
+/// planes, with the same result for any number of threads. Throws the errors of PlaneSource::visit. Expected
+/// O(points
 /// + triangles).
 [[nodiscard]] Verification verify(const PlaneSource& source, const VerifyOptions& options = {},
                                   const Execution& execution = {});
@@ -125,9 +126,10 @@ struct VectorVerification {
     /// See Verification::heights; set with a mesh if there are layers.
     std::optional<CoveredHeights> heights = {};
     /// Findings of FindingOrigin::vectors and layers_or_vectors. Contours are checked for each exposure by
-    /// itself. If the number of the contour is known, misoriented_rings also has rings within material of
-    /// their own exposure. The planes of unreached_layers are those of a part; with a mesh, those of all
-    /// parts together. Without a mesh, material is the area within the outermost contour.
+    /// itself. misoriented_rings also counts tangled rings and, if the number of the contour is known,
+    /// rings within material of their own exposure. The planes of unreached_layers are those of a part; with
+    /// a mesh, those of all parts together. Without a mesh, material is the area within the outermost
+    /// contour.
     Findings findings;
 
     [[nodiscard]] bool ok() const noexcept { return findings.first(Severity::defect) == nullptr; }

@@ -1,6 +1,6 @@
 #pragma once
 
-// A mesh that is prepared for single planes.
+// Cuts a mesh with single planes, one at a time.
 
 #include "lamella/contour/layer.hpp"
 #include "lamella/contour/plane_rule.hpp"
@@ -19,7 +19,7 @@ namespace lamella {
 /// The section of a mesh with a plane of any direction.
 struct PlaneSection {
     /// The contours, in coordinates within the plane whose origin is the given point. The heights are 0.
-    /// Material lies to the left of the contours for an observer whom the normal of the plane points at.
+    /// Seen from the side that the normal points to, material is to the left of the contours.
     Layer layer;
     /// Maps (x, y, 0) of the layer to the coordinates of the mesh.
     Transform to_mesh;
@@ -30,14 +30,14 @@ struct PlaneSection {
 
 /// Cuts one mesh with many single planes, for example while somebody moves a plane through it. The mesh is
 /// prepared once; then the cost of a plane depends mainly on the number of triangles that it cuts. Use
-/// `slice` for the layers of a whole part.
+/// the function lamella::slice for the layers of a whole part.
 ///
 /// Immutable: any number of threads may use it at once. Cheap to move, and the mesh is shared.
 class Slicer {
   public:
-    /// Prepares horizontal planes. O(n log n) for n triangles: it links all edges, where `slice` links only
-    /// those that its planes cut. Takes about 64 bytes for each edge. Throws Error{limit} for about 2^32 / 3
-    /// triangles or more, and Error{cancelled}. The preparation uses `execution.threads`.
+    /// Prepares horizontal planes. O(n log n) for n triangles: it links all edges, where lamella::slice links
+    /// only those that its planes cut. Takes about 64 bytes for each edge. Throws Error{limit} for about 2^32
+    /// / 3 triangles or more, and Error{cancelled}. The preparation uses `execution.threads`.
     explicit Slicer(Mesh mesh, PlaneRule rule = PlaneRule::section_above, const Execution& execution = {});
     ~Slicer();
     Slicer(Slicer&&) noexcept;
@@ -47,7 +47,7 @@ class Slicer {
 
     [[nodiscard]] const Mesh& mesh() const noexcept;
 
-    /// Returns the layer at height z: bit for bit the contours that `slice` returns for this plane. Its index
+    /// Returns the layer at height z: bit for bit the contours that lamella::slice returns for it. Its index
     /// is 0, and its bottom and top are z. A plane that misses the mesh gives a layer without contours.
     /// Throws Error{usage} if z is not finite. O(log n + k log k) for k triangles that the plane cuts,
     /// provided that few other triangles end just below it. Runs on the calling
@@ -55,8 +55,9 @@ class Slicer {
     [[nodiscard]] Layer section(double z) const;
 
     /// Returns the layers of a plan as a source, which cuts each plane when it is needed, and shares the
-    /// prepared mesh. Its contents are unknown. Throws the error of `check` for a plan, and Error{usage} for
-    /// another rule than that of the slicer, or a snap distance. O(layers).
+    /// prepared mesh. PlaneSource::contents is empty. Throws the error of `check` for a plan, and
+    /// Error{usage} for another rule than that of the slicer, or a snap distance. O(layers + size of the
+    /// mesh), on the calling thread.
     [[nodiscard]] PlaneSource slice(const Plan& plan) const;
 
     /// Returns the section with the plane through `origin` perpendicular to `normal`, which has any length.
