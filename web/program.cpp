@@ -95,12 +95,12 @@ Json described(const MeshFile& file, const Plate& plate) {
 
 Json described(const LayerFile& file) {
     Json parts = Json::array();
-    for (const LayerPart& part : file.parts)
+    for (const PartInfo& part : file.parts)
         parts.push_back(
             {{"label", part.label}, {"support", part.support}, {"vectors", part.exposure.has_value()}});
     return {{"kind", "layers"},
             {"format", file.format},
-            {"layers", file.parts.front().layers.size()},
+            {"layers", file.planes.size()},
             {"parts", std::move(parts)}};
 }
 
