@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 #include <lamella/formats.hpp>
+#include <lamella/polygon/compare.hpp>
 
 #include <algorithm>
 #include <cmath>
