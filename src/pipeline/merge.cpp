@@ -424,20 +424,12 @@ void write_anew(const std::vector<ShardFile>& shards, const std::string& output,
                 const LayerWriteOptions& options, const LayerReadOptions& reading, MergeResult& result,
                 const Execution& execution) {
     const std::vector<PartInfo> parts = parts_of(shards);
-    LayerFileInfo info{.box = {},
-                       .layers = result.layers,
-                       .bottom = result.bottom,
-                       .parts = parts,
-                       .rule = shards.front().rule};
-    for (PartInfo& part : info.parts) {
-        if (part.label.empty())
-            part.label = PartInfo{}.label;
-        info.box.add(part.box);
-    }
-    if (info.box.empty())
-        info.box.add(Point3{});
-    info.box.min.z = result.bottom;
-    info.box.max.z = result.top;
+    PlaneSource all; // of which the header needs no more
+    all.planes = {{.bottom = result.bottom, .top = result.top}};
+    all.parts = parts;
+    all.rule = shards.front().rule;
+    LayerFileInfo info = info_of(all);
+    info.layers = result.layers;
     const std::unique_ptr<LayerWriter> writer = open_layer_writer(output, format, info, options);
     double top = result.bottom;
     std::uint64_t next = 0; // lowest unused index
