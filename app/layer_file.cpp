@@ -33,7 +33,7 @@ void write_planes(LayerWriter& writer, const LayerFile& file, bool search_rings,
             strict, messages);
     LayerFindingSearch search(file.planes.size(), LayerUse::kept, file.rounding, InversionSearch::quick,
                               execution, max_memory);
-    const PlaneSink write = [&](std::size_t i, const ScanVectors& plane) {
+    const PlaneSink write = [&](std::size_t i, const Plane& plane) {
         if (search_rings && !strict)
             search.look_at(i, file, plane);
         return writer.prepare(plane);

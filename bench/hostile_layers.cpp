@@ -349,7 +349,7 @@ Timed move_by(const Layer& layer, double by, OffsetCorner shape = OffsetCorner::
 Timed make_vectors(const Layer& layer, double area_mm2) {
     const ScanStrategy strategy;
     const auto start = Clock::now();
-    const ScanVectors vectors = scan(layer, {}, {}, strategy).vectors;
+    const Plane vectors = scan(layer, {}, {}, strategy).vectors;
     const double seconds = seconds_since(start);
     double length = 0;
     for (const PointArray& hatches : vectors.hatches)

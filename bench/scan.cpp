@@ -42,7 +42,7 @@ ScanStrategy lines_only(HatchPattern pattern) {
 }
 
 /// Returns the length of the vectors of the first exposure.
-double length_of(const ScanVectors& vectors) {
+double length_of(const Plane& vectors) {
     return measure_vectors(vectors.polylines.front(), vectors.hatches.front().span(), {}).figures.marked_mm;
 }
 
@@ -113,13 +113,13 @@ Hatched hatch_layers(const Part& part, HatchPattern pattern, bool compare) {
     const std::size_t step = std::max<std::size_t>(1, layers.size() / 5);
     for (std::size_t i = 0; i < layers.size(); ++i) {
         const auto begin = Clock::now();
-        const ScanVectors vectors = scan(layers[i], {}, {}, strategy).vectors;
+        const Plane vectors = scan(layers[i], {}, {}, strategy).vectors;
         const double seconds = seconds_since(begin);
         result.seconds += seconds;
         result.vectors += vectors.hatches.front().size() / 2;
         const bool crossed = pattern == HatchPattern::chessboard || pattern == HatchPattern::hexagons;
         if (!crossed && i % step == step / 2) {
-            const ScanVectors plain = scan(layers[i], {}, {}, lines_only(HatchPattern::lines)).vectors;
+            const Plane plain = scan(layers[i], {}, {}, lines_only(HatchPattern::lines)).vectors;
             result.right =
                 result.right && std::abs(length_of(vectors) - length_of(plain)) <= 1e-9 * length_of(plain);
         }
@@ -156,11 +156,10 @@ Job whole_job(const Part& part, const ScanStrategy& strategy) {
     for (std::size_t i = 0; i < layers.size(); ++i) {
         const std::size_t below = std::min<std::size_t>(i, strategy.downskin.layers);
         const std::size_t above = std::min<std::size_t>(layers.size() - 1 - i, strategy.upskin.layers);
-        const ScanVectors vectors =
-            scan(layers[i], std::span(reversed).subspan(layers.size() - i, below),
-                 std::span(layers).subspan(i + 1, above), strategy, {.cache = &memory})
-                .vectors;
-        for (std::size_t e = 0; e < vectors.exposures(); ++e)
+        const Plane vectors = scan(layers[i], std::span(reversed).subspan(layers.size() - i, below),
+                                   std::span(layers).subspan(i + 1, above), strategy, {.cache = &memory})
+                                  .vectors;
+        for (std::size_t e = 0; e < vectors.parts(); ++e)
             job.vectors += vectors.polylines[e].points.size() + vectors.hatches[e].size() / 2;
     }
     job.scan = seconds_since(scanning);

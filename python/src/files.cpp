@@ -148,14 +148,12 @@ class StackWriter {
 
     /// Writes the layers of each part, plane by plane.
     void write(const std::vector<std::vector<LayerPointer>>& planes, unsigned threads) {
-        const auto plane_of = [&](std::size_t i) {
-            ScanVectors plane;
+        std::vector<Plane> kept(planes.size());
+        for (std::size_t i = 0; i < planes.size(); ++i)
             for (const LayerPointer& part : planes[i])
-                plane.add(part->get(), part->hatches());
-            return plane;
-        };
+                kept[i].append(part->plane());
         run(threads, py::none(),
-            [&](const Execution& execution) { write_planes(writer(), planes.size(), plane_of, execution); });
+            [&](const Execution& execution) { write_planes(writer(), kept, execution); });
     }
 
     std::vector<py::str> finish() {

@@ -126,8 +126,9 @@ LayerStream::LayerStream(PlatePointer plate, CutPlan cuts, const Engine& with, u
     worker_ = std::thread([this, execution] {
         std::exception_ptr failure;
         try {
-            const PlateSink sink{.prepare = [&](std::span<const Layer> bodies) -> Commit {
-                return [this, kept = cuts_.mended(bodies, *plate_, layer_limits(execution))]() mutable {
+            const PlateSink sink{.prepare = [&](const Plane& bodies) -> Commit {
+                return [this,
+                        kept = cuts_.mended(bodies.polylines, *plate_, layer_limits(execution))]() mutable {
                     shared_->queue.put(std::move(kept));
                 };
             }};
@@ -236,8 +237,8 @@ std::vector<LayerPointer> sliced(const SourcePlate& plate, const CutPlan& cuts, 
                                  const Execution& execution, const Engine& engine, Repairs* repairs) {
     std::vector<LayerPointer> layers;
     layers.reserve(plan.layers.size());
-    const PlateSink sink{.prepare = [&](std::span<const Layer> bodies) -> Commit {
-        return [&, made = cuts.mended(bodies, plate, layer_limits(execution))]() mutable {
+    const PlateSink sink{.prepare = [&](const Plane& bodies) -> Commit {
+        return [&, made = cuts.mended(bodies.polylines, plate, layer_limits(execution))]() mutable {
             if (repairs != nullptr)
                 cuts.add(*repairs, made);
             layers.push_back(std::move(made.layer));

@@ -45,7 +45,7 @@ Rounding rounding_of(const Stack* stack) {
 using Scanned = std::pair<std::vector<LayerPointer>, double>;
 
 Scanned shared_vectors(ScannedLayer scanned, const LayerPointer& layer) {
-    ScanVectors& vectors = scanned.vectors;
+    Plane& vectors = scanned.vectors;
     return {shared(std::move(vectors.polylines), layer->rule(), std::move(vectors.hatches)),
             std::accumulate(scanned.unreached_mm2.begin(), scanned.unreached_mm2.end(), 0.0)};
 }

@@ -35,9 +35,7 @@ const std::vector<std::int64_t>& SharedLayer::parents() const {
 }
 
 std::uint64_t SharedLayer::hash() const {
-    std::call_once(hashed_, [&] {
-        hash_ = hatches_.empty() ? content_hash(layer_) : content_hash(ScanVectors{{layer_}, {hatches_}});
-    });
+    std::call_once(hashed_, [&] { hash_ = hatches_.empty() ? content_hash(layer_) : content_hash(plane()); });
     return hash_;
 }
 

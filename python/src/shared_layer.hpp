@@ -33,6 +33,12 @@ class SharedLayer {
     [[nodiscard]] const Layer& get() const noexcept { return layer_; }
     /// Returns the hatch lines of a slice file, or of scan vectors: two points for each line.
     [[nodiscard]] const PointArray& hatches() const noexcept { return hatches_; }
+    /// Returns the layer and its hatch lines as a plane of one part.
+    [[nodiscard]] Plane plane() const {
+        Plane plane;
+        plane.add(layer_, hatches_);
+        return plane;
+    }
     /// Returns the rule by which this layer, or the layer from which it was made, was cut; nullopt if it was
     /// made from arrays.
     [[nodiscard]] std::optional<PlaneRule> rule() const noexcept { return rule_; }

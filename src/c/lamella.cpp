@@ -374,6 +374,10 @@ Writing writing_of(const lamella_layers& layers, const char* format, const std::
              .rule = layers.rule}};
 }
 
+std::vector<Plane> planes_of(const lamella_layers& layers) {
+    return {layers.layers.begin(), layers.layers.end()};
+}
+
 /// Returns the layers after a change of each of them.
 template <class Change>
 lamella_layers changed(const lamella_layers& layers, const Execution& execution, const Change& change) {
@@ -606,8 +610,7 @@ lamella_status lamella_write_layers(const lamella_layers* layers, const char* pa
         const std::string to = &required(path, "path");
         const Execution execution = execution_of(settings);
         const Writing writing = writing_of(from, format, to, execution);
-        warn(write_layers(to, writing.format, std::span<const Layer>(from.layers), writing.info, {},
-                          execution));
+        warn(write_layers(to, writing.format, planes_of(from), writing.info, {}, execution));
     });
 }
 
@@ -619,8 +622,7 @@ lamella_status lamella_write_layers_bytes(const lamella_layers* layers, const ch
         Writing writing = writing_of(from, &required(format, "format"), "layers", execution);
         lamella_bytes result;
         writing.info.memory = &result.content;
-        warn(write_layers("layers", writing.format, std::span<const Layer>(from.layers), writing.info, {},
-                          execution));
+        warn(write_layers("layers", writing.format, planes_of(from), writing.info, {}, execution));
         return result;
     });
 }

@@ -7,7 +7,6 @@
 #include <cassert>
 #include <charconv>
 #include <cstddef>
-#include <iterator>
 #include <utility>
 
 namespace lamella {
@@ -40,16 +39,6 @@ std::string Exposure::name() const {
 
 std::string Exposure::label() const {
     return fmt::format("{} {}", part, name());
-}
-
-void ScanVectors::add(Layer lines, PointArray hatch_lines) {
-    polylines.push_back(std::move(lines));
-    hatches.push_back(std::move(hatch_lines));
-}
-
-void ScanVectors::append(ScanVectors other) {
-    std::move(other.polylines.begin(), other.polylines.end(), std::back_inserter(polylines));
-    std::move(other.hatches.begin(), other.hatches.end(), std::back_inserter(hatches));
 }
 
 std::optional<Exposure> labelled_exposure(std::string_view label) {

@@ -1,9 +1,9 @@
 #include "lamella/contour/layer.hpp"
 
-#include "lamella/contour/exposure.hpp"
 #include "lamella/contour/normal_form.hpp"
 #include "lamella/core/error.hpp"
 
+#include "contour/same_height.hpp"
 #include "core/bit_cast.hpp"
 #include "core/farthest.hpp"
 
@@ -11,7 +11,9 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <cstdint>
+#include <iterator>
 #include <string>
 #include <utility>
 
@@ -69,16 +71,32 @@ void check(const Layer& layer) {
             refuse_first_of(layer.contour(i), layer, fmt::format("contour {}", i));
 }
 
-void check(const ScanVectors& vectors) {
-    if (vectors.polylines.size() != vectors.hatches.size())
+void Plane::add(Layer lines, PointArray hatch_lines) {
+    polylines.push_back(std::move(lines));
+    hatches.push_back(std::move(hatch_lines));
+}
+
+void Plane::append(Plane other) {
+    std::move(other.polylines.begin(), other.polylines.end(), std::back_inserter(polylines));
+    std::move(other.hatches.begin(), other.hatches.end(), std::back_inserter(hatches));
+}
+
+void check(const Plane& plane) {
+    if (plane.polylines.size() != plane.hatches.size())
         throw Error(ErrorKind::usage,
-                    fmt::format("scan vectors have polylines of {} exposures and hatch lines of {}; each "
-                                "exposure has both",
-                                vectors.polylines.size(), vectors.hatches.size()));
-    for (std::size_t i = 0; i < vectors.exposures(); ++i) {
-        const Layer& layer = vectors.polylines[i];
-        const PointArray& hatches = vectors.hatches[i];
+                    fmt::format("a plane has polylines of {} parts and hatch lines of {}; each part has both",
+                                plane.polylines.size(), plane.hatches.size()));
+    for (std::size_t i = 0; i < plane.parts(); ++i) {
+        const Layer& layer = plane.polylines[i];
+        const PointArray& hatches = plane.hatches[i];
         check(layer);
+        if (const Layer& first = plane.polylines.front(); !on_same_plane(first, layer))
+            throw Error(
+                ErrorKind::usage,
+                fmt::format("part {} of a plane has layer {} at z = {} mm (from {} to {}), and the first "
+                            "part has layer {} at {} (from {} to {})",
+                            i + 1, layer.index, layer.z, layer.bottom, layer.top, first.index, first.z,
+                            first.bottom, first.top));
         if (hatches.size() % 2 != 0)
             throw Error(ErrorKind::usage,
                         fmt::format("layer {} has {} points of hatch lines; each line has two", layer.index,

@@ -217,10 +217,10 @@ std::uint64_t content_hash(const Layer& layer) noexcept {
     return hash_of(layer, {});
 }
 
-std::uint64_t content_hash(const ScanVectors& vectors) noexcept {
+std::uint64_t content_hash(const Plane& vectors) noexcept {
     assert(vectors.polylines.size() == vectors.hatches.size());
     std::vector<std::uint64_t> hashes;
-    for (std::size_t i = 0; i < vectors.exposures(); ++i)
+    for (std::size_t i = 0; i < vectors.parts(); ++i)
         hashes.push_back(hash_of(vectors.polylines[i], vectors.hatches[i].span()));
     return stack_hash(hashes);
 }

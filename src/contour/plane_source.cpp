@@ -18,8 +18,8 @@
 
 namespace lamella {
 
-ScanVectors PlaneSource::plane(std::size_t position) const {
-    ScanVectors vectors = make(position);
+Plane PlaneSource::plane(std::size_t position) const {
+    Plane vectors = make(position);
     const Layer& heights = planes[position];
     for (Layer& layer : vectors.polylines) {
         layer.index = heights.index;
@@ -67,7 +67,7 @@ std::vector<LayerPart> PlaneSource::in_memory(const Execution& execution) const 
     }
     visit(
         Stage::read,
-        [&](std::size_t i, ScanVectors plane, unsigned) {
+        [&](std::size_t i, Plane plane, unsigned) {
             for (std::size_t part = 0; part < result.size(); ++part) {
                 result[part].layers[i] = std::move(plane.polylines[part]);
                 if (!result[part].hatches.empty())
@@ -82,9 +82,9 @@ LayerStack PlaneSource::merged(const Execution& execution) const {
     LayerStack all(planes.size());
     visit(
         Stage::read,
-        [&](std::size_t i, ScanVectors plane, unsigned) {
-            all[i] = plane.exposures() == 1 ? std::move(plane.polylines.front())
-                                            : lamella::merged(plane.polylines);
+        [&](std::size_t i, Plane plane, unsigned) {
+            all[i] =
+                plane.parts() == 1 ? std::move(plane.polylines.front()) : lamella::merged(plane.polylines);
         },
         without_progress(execution));
     return all;
@@ -100,24 +100,21 @@ Execution PlaneSource::for_planes(const Execution& execution) const {
 
 namespace {
 
-std::uint64_t memory_of(const ScanVectors& plane) {
+std::uint64_t memory_of(const Plane& plane) {
     constexpr std::uint64_t of_empty = sizeof(Layer) + sizeof(PointArray) + 2 * 64; // two more allocations
     std::uint64_t bytes = 0;
-    for (std::size_t part = 0; part < plane.exposures(); ++part)
+    for (std::size_t part = 0; part < plane.parts(); ++part)
         bytes += of_empty + plane.polylines[part].offsets.size() * sizeof(std::uint64_t) +
                  (plane.polylines[part].points.size() + plane.hatches[part].size()) * sizeof(Point2);
     return bytes;
 }
 
-/// Throws Error{usage} unless the layers of the part, and its hatch lines, are on these planes, which are
-/// those of the first part.
-void check_planes(const LayerPart& part, bool first, const LayerStack& planes, const std::string& path) {
+/// Throws Error{usage} unless the layers of the part, and its hatch lines, are on these planes, which have
+/// the parts before it, if any.
+void check_planes(const LayerPart& part, std::span<const Plane> planes, const std::string& path) {
     const auto refuse = [&](const std::string& found) {
         throw Error(ErrorKind::usage, fmt::format("{}{}the part \"{}\" {}", path, path.empty() ? "" : ": ",
                                                   excerpt(part.label), found));
-    };
-    const auto same = [](double a, double b) {
-        return std::abs(a - b) <= same_height_mm;
     };
     if (part.layers.size() != planes.size())
         refuse(fmt::format(
@@ -126,10 +123,10 @@ void check_planes(const LayerPart& part, bool first, const LayerStack& planes, c
             part.layers.size(), planes.size()));
     if (!part.hatches.empty() && part.hatches.size() != planes.size())
         refuse(fmt::format("has {} layers and hatch lines of {}", planes.size(), part.hatches.size()));
-    for (std::size_t i = 0; i < planes.size() && !first; ++i) {
-        const Layer& a = planes[i];
+    for (std::size_t i = 0; i < planes.size() && planes[i].parts() > 0; ++i) {
+        const Layer& a = planes[i].polylines.front();
         const Layer& b = part.layers[i];
-        if (a.index != b.index || !same(a.z, b.z) || !same(a.bottom, b.bottom) || !same(a.top, b.top))
+        if (!on_same_plane(a, b))
             refuse(fmt::format(
                 "has other planes than the first one: layer {} at z = {} mm (from {} to {}), and not "
                 "layer {} at {} (from {} to {})",
@@ -139,44 +136,55 @@ void check_planes(const LayerPart& part, bool first, const LayerStack& planes, c
 
 } // namespace
 
-PlaneSource source_of(std::vector<LayerPart> parts, std::string path, const Execution& execution) {
+PlaneSource source_of(std::vector<Plane> planes, std::vector<PartInfo> parts, std::string path,
+                      const Execution& execution) {
     PlaneSource source;
     source.path = std::move(path);
-    if (!parts.empty())
-        for (const Layer& layer : parts.front().layers)
-            source.planes.push_back(
-                {.index = layer.index, .z = layer.z, .bottom = layer.bottom, .top = layer.top});
-    const std::size_t planes = source.planes.size();
-    for (const LayerPart& part : parts) {
-        check_planes(part, &part == parts.data(), source.planes, source.path);
-        source.parts.push_back(
-            {.label = part.label, .box = {}, .exposure = part.exposure, .support = part.support});
+    source.parts = std::move(parts);
+    source.contents.resize(planes.size());
+    for (const Plane& plane : planes) {
+        if (plane.parts() == 0 || plane.parts() != source.parts.size())
+            throw Error(ErrorKind::usage,
+                        fmt::format("{}{}a plane has {} parts, and there are {}", source.path,
+                                    source.path.empty() ? "" : ": ", plane.parts(), source.parts.size()));
+        const Layer& layer = plane.polylines.front();
+        source.planes.push_back(
+            {.index = layer.index, .z = layer.z, .bottom = layer.bottom, .top = layer.top});
     }
-    source.contents.resize(planes);
-    std::vector<ScanVectors> kept(planes);
     Executor executor(execution);
     std::vector<PlaneSums> sums(executor.workers(), PlaneSums(source.parts.size()));
-    std::vector<char> unsound(planes);
-    executor.for_chunks(planes, 1, [&](std::uint64_t i, std::uint64_t, unsigned worker) {
-        for (LayerPart& part : parts)
-            kept[i].add(std::move(part.layers[i]), part.hatches.empty() ? PointArray() : part.hatches[i]);
+    std::vector<char> unsound(planes.size());
+    executor.for_chunks(planes.size(), 1, [&](std::uint64_t i, std::uint64_t, unsigned worker) {
         try {
-            check(kept[i]);
+            check(planes[i]);
         } catch (const Error&) {
             unsound[i] = 1;
             return;
         }
-        source.contents[i] = sums[worker].add(kept[i]);
+        source.contents[i] = sums[worker].add(planes[i]);
     });
     executor.check_cancelled();
-    for (std::size_t i = 0; i < planes; ++i)
+    for (std::size_t i = 0; i < planes.size(); ++i)
         if (unsound[i] != 0)
-            check(kept[i]); // throws the error of the lowest one
+            check(planes[i]); // throws the error of the lowest one
     for (std::size_t worker = 1; worker < sums.size(); ++worker)
         sums.front().add(sums[worker]);
     sums.front().put(source);
-    keep_planes(source, std::move(kept));
+    keep_planes(source, std::move(planes));
     return source;
+}
+
+PlaneSource source_of(std::vector<LayerPart> parts, std::string path, const Execution& execution) {
+    std::vector<Plane> planes(parts.empty() ? 0 : parts.front().layers.size());
+    std::vector<PartInfo> infos;
+    for (LayerPart& part : parts) {
+        check_planes(part, planes, path);
+        for (std::size_t i = 0; i < planes.size(); ++i)
+            planes[i].add(std::move(part.layers[i]),
+                          part.hatches.empty() ? PointArray() : std::move(part.hatches[i]));
+        infos.push_back({.label = part.label, .box = {}, .exposure = part.exposure, .support = part.support});
+    }
+    return source_of(std::move(planes), std::move(infos), std::move(path), execution);
 }
 
 PlaneSource source_of(std::vector<LayerStack> parts, const Rounding& rounding, const Execution& execution) {
@@ -188,16 +196,16 @@ PlaneSource source_of(std::vector<LayerStack> parts, const Rounding& rounding, c
     return source;
 }
 
-void keep_planes(PlaneSource& source, std::vector<ScanVectors> planes) {
+void keep_planes(PlaneSource& source, std::vector<Plane> planes) {
     source.bytes = 0;
-    for (const ScanVectors& plane : planes)
+    for (const Plane& plane : planes)
         source.bytes += memory_of(plane);
     source.plane_bytes = 0;
     source.spare_bytes = std::numeric_limits<std::uint64_t>::max();
-    source.make =
-        [planes = std::make_shared<const std::vector<ScanVectors>>(std::move(planes))](std::size_t position) {
-            return (*planes)[position];
-        };
+    source.make = [planes =
+                       std::make_shared<const std::vector<Plane>>(std::move(planes))](std::size_t position) {
+        return (*planes)[position];
+    };
 }
 
 PlaneSource with_parts(const PlaneSource& source, std::vector<std::size_t> parts) {
@@ -206,8 +214,8 @@ PlaneSource with_parts(const PlaneSource& source, std::vector<std::size_t> parts
     for (const std::size_t part : parts)
         some.parts.push_back(source.parts[part]);
     some.make = [make = source.make, parts = std::move(parts)](std::size_t position) {
-        ScanVectors all = make(position);
-        ScanVectors vectors;
+        Plane all = make(position);
+        Plane vectors;
         for (const std::size_t part : parts)
             vectors.add(std::move(all.polylines[part]), std::move(all.hatches[part]));
         return vectors;

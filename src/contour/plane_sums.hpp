@@ -30,7 +30,7 @@ class PlaneSums {
         hatch_lines_[part] += lines;
     }
     /// Adds a plane, and returns its content. O(points).
-    PlaneContent add(const ScanVectors& plane) {
+    PlaneContent add(const Plane& plane) {
         PlaneContent content;
         for (std::size_t part = 0; part < boxes_.size(); ++part) {
             const Layer& layer = plane.polylines[part];
@@ -88,6 +88,6 @@ class PlaneSums {
 
 /// Gives the source these planes, which stay in memory. The other members of the source are those of the
 /// planes.
-void keep_planes(PlaneSource& source, std::vector<ScanVectors> planes);
+void keep_planes(PlaneSource& source, std::vector<Plane> planes);
 
 } // namespace lamella

@@ -62,9 +62,9 @@ namespace lamella {
 /// 128u^2 covers both and the rounding of the bound. An underflow of an inner product adds an error of
 /// 2^-1075 times the third factor. If that factor is below 1e60 and size is above 1e-200, this is far less
 /// than the slack u^2 size, and so is the underflow of the outer product.
-class Plane {
+class TrianglePlane {
   public:
-    Plane(const Point3& a, const Point3& b, const Point3& c) noexcept : a_(a), b_(b), c_(c) {
+    TrianglePlane(const Point3& a, const Point3& b, const Point3& c) noexcept : a_(a), b_(b), c_(c) {
         const Point3 p{b.x - a.x, b.y - a.y, b.z - a.z};
         const Point3 q{c.x - a.x, c.y - a.y, c.z - a.z};
         normal_ = {p.y * q.z - p.z * q.y, p.z * q.x - p.x * q.z, p.x * q.y - p.y * q.x};
@@ -110,7 +110,7 @@ class Plane {
 /// Exact for all finite coordinates.
 [[nodiscard]] inline int orientation(const Point3& a, const Point3& b, const Point3& c,
                                      const Point3& d) noexcept {
-    return Plane(a, b, c).side(d);
+    return TrianglePlane(a, b, c).side(d);
 }
 
 } // namespace lamella

@@ -176,7 +176,8 @@ std::optional<IntersectionKind> ContactSeeker::with_close_one(const NamedTriangl
     const Shared shared = shared_corners(triangle_, other);
     if (shared.count >= 3)
         return IntersectionKind::overlapping;
-    const auto signs_by = [](const NamedTriangle& of_plane, const Plane& plane, const NamedTriangle& of) {
+    const auto signs_by = [](const NamedTriangle& of_plane, const TrianglePlane& plane,
+                             const NamedTriangle& of) {
         Signs signs{};
         for (std::size_t k = 0; k < 3; ++k) {
             const std::uint32_t name = of.names[k];
@@ -194,7 +195,7 @@ std::optional<IntersectionKind> ContactSeeker::with_close_one(const NamedTriangl
     const bool share_a_corner = shared.count == 1;
     if (shared.count == 2 || (share_a_corner && in_a_point(other_signs)))
         return std::nullopt;
-    const Plane other_plane(other.corners[0], other.corners[1], other.corners[2]);
+    const TrianglePlane other_plane(other.corners[0], other.corners[1], other.corners[2]);
     const Signs signs = signs_by(other, other_plane, triangle_);
     if (same(signs, 1) || same(signs, -1) || (share_a_corner && in_a_point(signs)))
         return std::nullopt;

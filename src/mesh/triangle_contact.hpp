@@ -45,7 +45,7 @@ class ContactSeeker {
     [[nodiscard]] std::optional<IntersectionKind> with_close_one(const NamedTriangle& other) const noexcept;
 
     NamedTriangle triangle_;
-    Plane plane_;
+    TrianglePlane plane_;
 };
 
 /// Compares two triangles: see ContactSeeker::with.

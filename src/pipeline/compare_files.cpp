@@ -7,7 +7,6 @@
 #include "contour/distance.hpp"
 #include "contour/same_height.hpp"
 #include "core/executor.hpp"
-#include "core/progress.hpp"
 #include "polygon/compared_planes.hpp"
 
 #include <algorithm>
@@ -55,7 +54,7 @@ HatchedParts hatched_parts(const LayerFile& file, const std::vector<std::string>
     return result;
 }
 
-std::vector<Point2> ends_of(const std::vector<std::size_t>& parts, const ScanVectors& vectors) {
+std::vector<Point2> ends_of(const std::vector<std::size_t>& parts, const Plane& vectors) {
     std::vector<Point2> ends;
     for (const std::size_t part : parts) {
         const std::span<const Point2> hatches = vectors.hatches[part].span();
@@ -182,31 +181,6 @@ bool has_other_hatches(const LayerFile& file) {
                        [](const PartInfo& part) { return !part.exposure && part.hatch_lines > 0; });
 }
 
-/// Returns whether each exposure of a plane has the contours of its partner.
-bool exposed_alike(std::span<const PartPair> pairs, const ScanVectors& first, const ScanVectors& second,
-                   double tolerance_mm) {
-    return std::all_of(pairs.begin(), pairs.end(), [&](const PartPair& pair) {
-        return compare(first.polylines[pair.first], second.polylines[pair.second]).within(tolerance_mm);
-    });
-}
-
-/// Returns whether the contours of each exposure of a plane have the order and the start points of its
-/// partner. Requires that the contours agree.
-bool followed_alike(std::span<const PartPair> pairs, const ScanVectors& first, const ScanVectors& second,
-                    double tolerance_mm) {
-    return std::all_of(pairs.begin(), pairs.end(), [&](const PartPair& pair) {
-        const Layer& one = first.polylines[pair.first];
-        const Layer& other = second.polylines[pair.second];
-        if (one.contours() != other.contours())
-            return true; // some contours are too small to be matched
-        for (std::size_t i = 0; i < one.contours(); ++i)
-            if (!one.contour(i).empty() && !other.contour(i).empty() &&
-                distance(one.contour(i).front(), other.contour(i).front()) > tolerance_mm)
-                return false;
-        return true;
-    });
-}
-
 StackPlanes planes_of(const LayerFile& file) {
     StackPlanes planes{file.planes, file.rounding, {}};
     for (const PlaneContent& content : file.contents)
@@ -214,19 +188,140 @@ StackPlanes planes_of(const LayerFile& file) {
     return planes;
 }
 
-/// The vectors of a plane, and the contours of all parts together.
-struct PlaneOfFile {
-    ScanVectors vectors;
-    Layer contours;
+/// Returns a source of pairs of planes: each of its planes has the parts of the first file, then those of the
+/// second. On planes that a file lacks, its parts are empty.
+PlaneSource pairs_of(const LayerFile& first, const LayerFile& second, std::span<const ComparedPlane> pairs) {
+    PlaneSource both;
+    for (const ComparedPlane& pair : pairs)
+        both.planes.push_back(pair.first ? first.planes[*pair.first] : second.planes[*pair.second]);
+    both.parts = first.parts;
+    both.parts.insert(both.parts.end(), second.parts.begin(), second.parts.end());
+    both.plane_bytes = first.plane_bytes + second.plane_bytes;
+    both.spare_bytes = std::min(first.spare_bytes, second.spare_bytes);
+    both.make = [&first, &second, pairs](std::size_t i) {
+        const auto plane_of = [](const LayerFile& file, std::optional<std::size_t> position) {
+            return position ? file.make(*position) : Plane(std::vector<Layer>(file.parts.size()));
+        };
+        Plane plane = plane_of(first, pairs[i].first);
+        plane.append(plane_of(second, pairs[i].second));
+        return plane;
+    };
+    return both;
+}
+
+/// Compares pairs of planes (see pairs_of).
+class PairComparer {
+  public:
+    PairComparer(const LayerFile& first, const LayerFile& second, std::vector<PartPair> exposures,
+                 const MovedPoints& tolerance, bool area_difference, const LayerLimits& limits)
+        : first_(first), second_(second), exposures_(std::move(exposures)), tolerance_(tolerance),
+          area_difference_(area_difference), limits_(limits) {
+        const std::vector<std::string> labels = hatched_labels(first);
+        const bool by_label = labels == hatched_labels(second);
+        if (!exposures_.empty() && !has_other_hatches(first) && !has_other_hatches(second)) {
+            for (const auto& [one, other] : exposures_) {
+                ones_.push_back({one});
+                others_.push_back({other});
+            }
+        } else {
+            ones_ = hatched_parts(first, labels, by_label);
+            others_ = hatched_parts(second, labels, by_label);
+        }
+        // The parts of the second file come after those of the first one.
+        for (PartPair& pair : exposures_)
+            pair.second += first.parts.size();
+        for (std::vector<std::size_t>& parts : others_)
+            for (std::size_t& part : parts)
+                part += first.parts.size();
+    }
+
+    /// Fills in the comparison of a plane; `in_order` is FileComparison::exposures_in_order.
+    void compare(const Plane& both, bool in_order, ComparedPlane& plane, PlaneDetails& details) const {
+        const std::span<const Layer> lines(both.polylines);
+        const Layer one = united(lines.first(first_.parts.size()));
+        const Layer other = united(lines.subspan(first_.parts.size()));
+        compare_layers(plane, one, other, tolerance_.contours);
+        if (area_difference_ && !plane.difference.same)
+            details.area_difference_mm2 =
+                measure(combine(one, other, BooleanOperation::exclude, limits_)).area_mm2;
+        if (plane.first && plane.second) {
+            compare_vectors(both, in_order, plane, details);
+        } else {
+            details.first_hatches = plane.first ? first_.contents[*plane.first].hatch_lines : 0;
+            details.second_hatches = plane.second ? second_.contents[*plane.second].hatch_lines : 0;
+        }
+    }
+
+  private:
+    /// Returns all contours of a file on a plane.
+    static Layer united(std::span<const Layer> parts) {
+        return parts.size() == 1 ? parts.front() : merged(parts);
+    }
+
+    void compare_vectors(const Plane& both, bool in_order, ComparedPlane& plane,
+                         PlaneDetails& details) const {
+        // Differences of all contours together are reported anyway.
+        if (plane.agree) {
+            details.exposed_alike = exposed_alike(both);
+            details.followed_alike = !details.exposed_alike || followed_alike(both);
+        }
+        for (std::size_t i = 0; i < ones_.size(); ++i)
+            compare_ends(ends_of(ones_[i], both), ends_of(others_[i], both), details);
+        const Layer& one = first_.planes[*plane.first];
+        const Layer& other = second_.planes[*plane.second];
+        details.height_distance_mm =
+            std::max(std::abs(one.bottom - other.bottom), std::abs(one.top - other.top));
+        details.heights_agree = details.height_distance_mm <= moved_cut(one, first_.rounding) +
+                                                                  moved_cut(other, second_.rounding) +
+                                                                  same_height_mm;
+        plane.agree = plane.agree && details.heights_agree &&
+                      details.hatch_distance_mm <= tolerance_.hatches && details.exposed_alike &&
+                      details.followed_alike;
+        details.same = plane.difference.same && details.height_distance_mm == 0 &&
+                       details.hatch_distance_mm == 0 && details.exposed_alike && details.followed_alike &&
+                       in_order;
+    }
+
+    /// Returns whether each exposure has the contours of its partner.
+    [[nodiscard]] bool exposed_alike(const Plane& both) const {
+        return std::all_of(exposures_.begin(), exposures_.end(), [&](const PartPair& pair) {
+            return lamella::compare(both.polylines[pair.first], both.polylines[pair.second])
+                .within(tolerance_.contours);
+        });
+    }
+
+    /// Returns whether the contours of each exposure have the order and the start points of its partner.
+    /// Requires that the contours agree.
+    [[nodiscard]] bool followed_alike(const Plane& both) const {
+        return std::all_of(exposures_.begin(), exposures_.end(), [&](const PartPair& pair) {
+            const Layer& one = both.polylines[pair.first];
+            const Layer& other = both.polylines[pair.second];
+            if (one.contours() != other.contours())
+                return true; // some contours are too small to be matched
+            for (std::size_t i = 0; i < one.contours(); ++i)
+                if (!one.contour(i).empty() && !other.contour(i).empty() &&
+                    distance(one.contour(i).front(), other.contour(i).front()) > tolerance_.contours)
+                    return false;
+            return true;
+        });
+    }
+
+    const LayerFile& first_;
+    const LayerFile& second_;
+    std::vector<PartPair> exposures_;
+    HatchedParts ones_;
+    HatchedParts others_;
+    MovedPoints tolerance_;
+    bool area_difference_;
+    LayerLimits limits_;
 };
 
-PlaneOfFile plane_of(const LayerFile& file, std::optional<std::size_t> position) {
-    if (!position)
-        return {};
-    PlaneOfFile plane{file.plane(*position), {}};
-    const std::vector<Layer>& lines = plane.vectors.polylines;
-    plane.contours = lines.size() == 1 ? lines.front() : merged(lines);
-    return plane;
+MovedPoints tolerance_of(const LayerFile& first, const LayerFile& second, std::optional<double> given_mm) {
+    if (given_mm)
+        return {*given_mm, *given_mm};
+    const MovedPoints one = moved_points(first);
+    const MovedPoints other = moved_points(second);
+    return {one.contours + other.contours, one.hatches + other.hatches};
 }
 
 } // namespace
@@ -241,75 +336,22 @@ FileComparison compare_files(const LayerFile& first, const LayerFile& second,
                              const FileComparisonOptions& options, const Execution& execution) {
     check_tolerance(options.tolerance_mm);
     FileComparison result{.layers = {}, .details = {}, .parameters = {}, .only_first = {}, .only_second = {}};
-    const std::vector<PartPair> pairs = compare_exposures(first, second, result);
-    const std::vector<std::string> labels = hatched_labels(first);
-    const bool by_label = labels == hatched_labels(second);
-    HatchedParts ones = hatched_parts(first, labels, by_label);
-    HatchedParts others = hatched_parts(second, labels, by_label);
-    if (!pairs.empty() && !has_other_hatches(first) && !has_other_hatches(second)) {
-        ones.clear();
-        others.clear();
-        for (const auto& [one, other] : pairs) {
-            ones.push_back({one});
-            others.push_back({other});
-        }
-    }
-    Executor executor(second.for_planes(first.for_planes(execution)));
-    MovedPoints tolerance{options.tolerance_mm.value_or(0), options.tolerance_mm.value_or(0)};
-    if (!options.tolerance_mm) {
-        const MovedPoints moved[2] = {moved_points(first), moved_points(second)};
-        tolerance = {moved[0].contours + moved[1].contours, moved[0].hatches + moved[1].hatches};
-    }
+    std::vector<PartPair> exposures = compare_exposures(first, second, result);
+    const MovedPoints tolerance = tolerance_of(first, second, options.tolerance_mm);
     const StackPlanes planes[2] = {planes_of(first), planes_of(second)};
     result.layers.tolerance_mm = std::max(tolerance.contours, tolerance.hatches);
     result.layers.planes = paired(planes[0], planes[1], options.tolerance_mm);
     result.layers.cut_apart = are_cut_apart(planes[0], planes[1], result.layers.planes);
     result.details.resize(result.layers.planes.size());
 
-    const LayerLimits limits = layer_limits(execution, options.max_memory, executor.workers());
-    ProgressMeter progress(execution, Stage::polygon, result.details.size());
-    executor.for_chunks(result.details.size(), 1, [&](std::uint64_t k, std::uint64_t, unsigned) {
-        ComparedPlane& plane = result.layers.planes[k];
-        PlaneDetails& details = result.details[k];
-        const PlaneOfFile of_first = plane_of(first, plane.first);
-        const PlaneOfFile of_second = plane_of(second, plane.second);
-        compare_layers(plane, of_first.contours, of_second.contours, tolerance.contours);
-        if (options.area_difference && !plane.difference.same)
-            details.area_difference_mm2 =
-                measure(combine(of_first.contours, of_second.contours, BooleanOperation::exclude, limits))
-                    .area_mm2;
-        if (plane.first && plane.second) {
-            // Differences of all contours together are reported anyway.
-            if (plane.agree) {
-                details.exposed_alike =
-                    exposed_alike(pairs, of_first.vectors, of_second.vectors, tolerance.contours);
-                details.followed_alike =
-                    !details.exposed_alike ||
-                    followed_alike(pairs, of_first.vectors, of_second.vectors, tolerance.contours);
-            }
-            for (std::size_t i = 0; i < ones.size(); ++i)
-                compare_ends(ends_of(ones[i], of_first.vectors), ends_of(others[i], of_second.vectors),
-                             details);
-            const Layer& one = first.planes[*plane.first];
-            const Layer& other = second.planes[*plane.second];
-            details.height_distance_mm =
-                std::max(std::abs(one.bottom - other.bottom), std::abs(one.top - other.top));
-            details.heights_agree = details.height_distance_mm <= moved_cut(one, first.rounding) +
-                                                                      moved_cut(other, second.rounding) +
-                                                                      same_height_mm;
-            plane.agree = plane.agree && details.heights_agree &&
-                          details.hatch_distance_mm <= tolerance.hatches && details.exposed_alike &&
-                          details.followed_alike;
-            details.same = plane.difference.same && details.height_distance_mm == 0 &&
-                           details.hatch_distance_mm == 0 && details.exposed_alike &&
-                           details.followed_alike && result.exposures_in_order;
-        } else {
-            details.first_hatches = plane.first ? first.contents[*plane.first].hatch_lines : 0;
-            details.second_hatches = plane.second ? second.contents[*plane.second].hatch_lines : 0;
-        }
-        progress.add(1);
-    });
-    progress.finish();
+    const PlaneSource pairs = pairs_of(first, second, result.layers.planes);
+    const unsigned threads = thread_count(pairs.for_planes(execution));
+    const PairComparer comparer(first, second, std::move(exposures), tolerance, options.area_difference,
+                                layer_limits(execution, options.max_memory, threads));
+    const PlaneVisitor compare_pair = [&](std::size_t i, const Plane& both, unsigned) {
+        comparer.compare(both, result.exposures_in_order, result.layers.planes[i], result.details[i]);
+    };
+    pairs.visit(Stage::polygon, compare_pair, execution);
     return result;
 }
 

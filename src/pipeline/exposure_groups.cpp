@@ -19,7 +19,7 @@ std::vector<double> areas_of(const PlaneSource& file, const Execution& execution
     std::vector<std::vector<double>> of_planes(file.planes.size());
     file.visit(
         Stage::polygon,
-        [&](std::size_t i, const ScanVectors& plane, unsigned) {
+        [&](std::size_t i, const Plane& plane, unsigned) {
             for (const Layer& polylines : plane.polylines)
                 of_planes[i].push_back(measure(polylines).area_mm2);
         },
@@ -61,7 +61,7 @@ std::vector<ExposureGroup> groups_of(const PlaneSource& file, bool all_together,
     return result;
 }
 
-PlaneGroup on_plane(const ExposureGroup& group, const PlaneSource& file, const ScanVectors& vectors) {
+PlaneGroup on_plane(const ExposureGroup& group, const PlaneSource& file, const Plane& vectors) {
     PlaneGroup exposures;
     for (const std::size_t i : group.exposures)
         exposures.push_back(

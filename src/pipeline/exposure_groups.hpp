@@ -36,8 +36,7 @@ struct PlaneExposure {
 using PlaneGroup = std::vector<PlaneExposure>;
 
 /// `vectors` are those of the plane of the file; the result refers to them.
-[[nodiscard]] PlaneGroup on_plane(const ExposureGroup& group, const PlaneSource& file,
-                                  const ScanVectors& vectors);
+[[nodiscard]] PlaneGroup on_plane(const ExposureGroup& group, const PlaneSource& file, const Plane& vectors);
 
 [[nodiscard]] const ContourRule& contours_of(const ScanStrategy& strategy, ScanRegion region) noexcept;
 [[nodiscard]] const HatchRule& hatch_of(const ScanStrategy& strategy, ScanRegion region) noexcept;

@@ -277,8 +277,9 @@ void FileSlicer::slice(JobOutput& output) {
 double FileSlicer::slice_ranges(PlaneRange sliced, LayerProcessor& processor) {
     const Plan& plan = planes_.plan;
     const std::uint64_t first = plan.layers.front().index;
-    const PlateSink sink{.prepare = [&processor, first](std::span<const Layer> parts) {
-        return processor.prepare(static_cast<std::uint32_t>(parts.front().index - first), parts);
+    const PlateSink sink{.prepare = [&processor, first](Plane bodies) {
+        const auto plane = static_cast<std::uint32_t>(bodies.polylines.front().index - first);
+        return processor.prepare(plane, std::move(bodies));
     }};
     const ShapeVisitor visitor = near_face_visitor(feed_, plan);
     const std::vector<PlaneRange> ranges = feed_.bring(plan, sliced, execution_);

@@ -20,8 +20,7 @@ JobOutput::JobOutput(const OutputFiles& files, const LayerFileInfo& info, std::u
         page_ = open_layer_page(files.page_path, info, files.page);
 }
 
-template <class Plane>
-Commit JobOutput::prepared(const Plane& plane) {
+Commit JobOutput::prepare(const Plane& plane) {
     Commit to_file;
     if (writer_)
         to_file = writer_->prepare(plane);
@@ -32,14 +31,6 @@ Commit JobOutput::prepared(const Plane& plane) {
             to_file.in_order(after);
         to_page.in_order(after);
     };
-}
-
-Commit JobOutput::prepare(std::span<const Layer> parts) {
-    return prepared(parts);
-}
-
-Commit JobOutput::prepare(const ScanVectors& vectors) {
-    return prepared(vectors);
 }
 
 void JobOutput::finish_file(FileResult& result) {

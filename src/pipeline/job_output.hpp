@@ -8,7 +8,6 @@
 #include "lamella/write/layer_writer.hpp"
 
 #include <memory>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -35,8 +34,7 @@ class JobOutput {
               std::unique_ptr<LayerWriter> writer = nullptr);
 
     /// Works as LayerWriter::prepare, for all outputs.
-    [[nodiscard]] Commit prepare(std::span<const Layer> parts);
-    [[nodiscard]] Commit prepare(const ScanVectors& vectors);
+    [[nodiscard]] Commit prepare(const Plane& plane);
 
     /// Ends the slice file, if there is one. Sets `format`, `bytes` and `losses` of the result.
     void finish_file(FileResult& result);
@@ -45,9 +43,6 @@ class JobOutput {
     [[nodiscard]] bool has_page() const noexcept { return page_ != nullptr; }
 
   private:
-    template <class Plane>
-    [[nodiscard]] Commit prepared(const Plane& plane);
-
     const LayerFormat* format_;
     std::unique_ptr<LayerWriter> writer_; ///< null if there is no slice file
     std::unique_ptr<LayerPageWriter> page_;

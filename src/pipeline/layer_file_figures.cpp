@@ -17,7 +17,7 @@ struct PlaneFigures {
     std::vector<ScanFigures> exposures;
 };
 
-PlaneFigures measure_plane(const PlaneSource& file, const ScanVectors& plane) {
+PlaneFigures measure_plane(const PlaneSource& file, const Plane& plane) {
     PlaneFigures figures;
     std::optional<Point2> beam;
     for (std::size_t i = 0; i < file.parts.size(); ++i) {
@@ -43,7 +43,7 @@ FileFigures measure(const PlaneSource& file, const Execution& execution) {
         if (part.exposure)
             all.exposures.push_back({*part.exposure, {}});
     // Sums of rounded numbers depend on the order.
-    const PlaneSink add = [&](std::size_t, const ScanVectors& vectors) -> Commit {
+    const PlaneSink add = [&](std::size_t, const Plane& vectors) -> Commit {
         const auto plane = std::make_shared<const PlaneFigures>(measure_plane(file, vectors));
         return [&all, plane] {
             all.contours.add(plane->contours);

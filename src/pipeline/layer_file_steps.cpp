@@ -41,8 +41,8 @@ std::vector<std::string> names_of(const LayerFile& file) {
 
 /// Takes the steps on planes of a file.
 struct PlaneSteps {
-    struct Plane {
-        ScanVectors vectors;
+    struct Stepped {
+        Plane vectors;
         LayerChanges changes;
         std::uint64_t hatch_lines_dropped = 0;
     };
@@ -51,9 +51,9 @@ struct PlaneSteps {
     LayerLimits limits;
     std::vector<std::string> names; ///< of parts
 
-    [[nodiscard]] Plane take(ScanVectors vectors) const {
+    [[nodiscard]] Stepped take(Plane vectors) const {
         ChangedPlane changed = take_steps_on_plane(steps, vectors.polylines, limits, names);
-        Plane plane{.vectors = std::move(vectors), .changes = changed.changes};
+        Stepped plane{.vectors = std::move(vectors), .changes = changed.changes};
         for (std::size_t i = 0; i < changed.parts.size(); ++i) {
             PointArray& hatches = plane.vectors.hatches[i];
             Layer& layer = plane.vectors.polylines[i];
@@ -97,11 +97,11 @@ SteppedFile take_steps(const LayerSteps& steps, LayerFile file, const Execution&
     std::vector<std::uint64_t> contours(threads);
     std::vector<std::uint64_t> hatch_lines_dropped(threads);
     std::vector<PlaneContent> contents(planes);
-    std::vector<ScanVectors> kept(fits_well(result.file) ? planes : 0);
-    const PlaneVisitor take_steps_on = [&](std::size_t i, ScanVectors before, unsigned worker) {
+    std::vector<Plane> kept(fits_well(result.file) ? planes : 0);
+    const PlaneVisitor take_steps_on = [&](std::size_t i, Plane before, unsigned worker) {
         if (steps.fill == FillRule::none)
             search.look_at(i, result.file, before);
-        PlaneSteps::Plane plane = stepper->take(std::move(before));
+        PlaneSteps::Stepped plane = stepper->take(std::move(before));
         result.planes[i] = plane.changes;
         contents[i] = sums[worker].add(plane.vectors);
         for (const Layer& layer : plane.vectors.polylines)

@@ -65,7 +65,7 @@ void LayerFindingSearch::look_at(std::size_t position, std::size_t part, const L
               .amount = inverted.area_mm2});
 }
 
-void LayerFindingSearch::look_at(std::size_t position, const PlaneSource& source, const ScanVectors& plane) {
+void LayerFindingSearch::look_at(std::size_t position, const PlaneSource& source, const Plane& plane) {
     for (std::size_t i = 0; i < source.parts.size(); ++i)
         if (!source.parts[i].exposure)
             look_at(position, i, plane.polylines[i]);
@@ -75,8 +75,7 @@ Findings layer_findings(const PlaneSource& source, LayerUse use, InversionSearch
                         const Execution& execution, std::uint64_t max_memory) {
     LayerFindingSearch all(source.planes.size(), use, source.rounding, search, execution, max_memory);
     source.visit(
-        Stage::polygon,
-        [&](std::size_t i, const ScanVectors& plane, unsigned) { all.look_at(i, source, plane); },
+        Stage::polygon, [&](std::size_t i, const Plane& plane, unsigned) { all.look_at(i, source, plane); },
         without_progress(execution));
     return all.findings();
 }

@@ -46,11 +46,12 @@ void LayerProcessor::set_times(FileResult::Seconds& seconds) const noexcept {
     seconds.order = 1e-9 * static_cast<double>(order_nanoseconds_);
 }
 
-Commit LayerProcessor::prepare(std::uint32_t plane, std::span<const Layer> parts) {
+Commit LayerProcessor::prepare(std::uint32_t number, Plane bodies) {
+    std::vector<Layer> parts = std::move(bodies.polylines);
     ClosedPlane closed;
     if (job_.close_gaps_mm && std::any_of(parts.begin(), parts.end(), std::mem_fn(&Layer::open_chains))) {
         closed = close_gaps_on_plane(parts, *job_.close_gaps_mm, job_.limits);
-        parts = closed.layers;
+        parts = std::move(closed.layers);
     }
     std::vector<InvertedRings> inverted = inverted_of(parts);
     PlateMaterial material;
@@ -58,27 +59,29 @@ Commit LayerProcessor::prepare(std::uint32_t plane, std::span<const Layer> parts
         const Stopwatch stepping;
         material = material_of(parts, job_.negatives, job_.steps, job_.limits, job_.names);
         count(stepping, step_nanoseconds_);
-        parts = material.parts;
+        parts = std::move(material.parts);
     }
-    const std::span<const Layer> bodies = material.bodies.empty() ? parts : material.bodies;
     UnitedParts united;
+    std::vector<Layer> separate; // the parts before they are united
     if (job_.scan && parts.size() > 1) {
         united = unite_overlapping_parts(parts, job_.objects, job_.supports, job_.limits, job_.names);
         if (inverted.empty()) // unlike others, united parts lose these rings before they are scanned
             inverted = inverted_of_united(parts, united);
-        parts = united.parts;
+        separate = std::exchange(parts, std::move(united.parts));
     }
-    if (mine_.begin <= plane && plane < mine_.end) {
-        totals_.add(plane - mine_.begin, parts, std::move(closed.joins), material.changes, inverted, bodies);
+    if (mine_.begin <= number && number < mine_.end) {
+        totals_.add(number - mine_.begin, parts, std::move(closed.joins), material.changes, inverted,
+                    !material.bodies.empty() ? material.bodies
+                    : !separate.empty()      ? separate
+                                             : parts);
         for (std::size_t i = 0; i < united.overlaps_mm2.size(); ++i)
             if (united.overlaps_mm2[i] > job_.scan->accepted_mm2)
-                totals_.add_overlap(plane - mine_.begin, i, united.overlaps_mm2[i]);
+                totals_.add_overlap(number - mine_.begin, i, united.overlaps_mm2[i]);
     }
-    return timed(job_.scan ? window_.prepare(plane, parts) : formatted(parts));
+    return timed(job_.scan ? window_.prepare(number, parts) : formatted(Plane(std::move(parts))));
 }
 
 /// Prepares a plane for the output.
-template <class Plane>
 Commit LayerProcessor::formatted(const Plane& plane) {
     const Stopwatch formatting;
     Commit commit = output_.prepare(plane);
@@ -132,7 +135,7 @@ std::vector<InvertedRings> LayerProcessor::inverted_of_united(std::span<const La
     return inverted;
 }
 
-ScanVectors LayerProcessor::vectors_of(const PlaneLayers& plane) {
+Plane LayerProcessor::vectors_of(const PlaneLayers& plane) {
     const Stopwatch scanning;
     PlaneVectors vectors =
         scan_plane(plane, job_.supports, job_.names, *job_.scan, job_.written, caches_, job_.limits);

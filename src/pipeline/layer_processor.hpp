@@ -32,8 +32,8 @@ class LayerProcessor {
     LayerProcessor(LayerJob job, std::span<const PlannedLayer> planes, PlaneRange sliced, PlaneRange mine,
                    JobOutput& output);
 
-    /// Like PlateSink::prepare, for the plane with this number among all planes.
-    [[nodiscard]] Commit prepare(std::uint32_t plane, std::span<const Layer> parts);
+    /// Like PlateSink::prepare, for the plane with this number among all planes. Hatch lines are dropped.
+    [[nodiscard]] Commit prepare(std::uint32_t number, Plane bodies);
 
     [[nodiscard]] LayerTotals& totals() noexcept { return totals_; }
     /// Sets the seconds of layer steps, of scan vectors, of formatting and of writing, each summed over all
@@ -44,8 +44,7 @@ class LayerProcessor {
     [[nodiscard]] std::vector<InvertedRings> inverted_of(std::span<const Layer> bodies) const;
     [[nodiscard]] std::vector<InvertedRings> inverted_of_united(std::span<const Layer> parts,
                                                                 const UnitedParts& united) const;
-    [[nodiscard]] ScanVectors vectors_of(const PlaneLayers& plane);
-    template <class Plane>
+    [[nodiscard]] Plane vectors_of(const PlaneLayers& plane);
     [[nodiscard]] Commit formatted(const Plane& plane);
     [[nodiscard]] Commit timed(Commit commit);
 

@@ -403,10 +403,9 @@ std::vector<PartInfo> parts_of(const std::vector<ShardFile>& shards) {
 
 /// Returns the layer of each part on a plane of a file, with its hatch lines. The layer is empty if the file
 /// does not list the part.
-ScanVectors plane_of(const LayerFile& file, std::size_t plane, ScanVectors of_file,
-                     const std::vector<PartInfo>& parts) {
+Plane plane_of(const LayerFile& file, std::size_t plane, Plane of_file, const std::vector<PartInfo>& parts) {
     const Layer& any = file.planes[plane];
-    ScanVectors vectors;
+    Plane vectors;
     std::size_t next = 0;
     for (const PartInfo& part : parts) {
         if (next != file.parts.size() && file.parts[next].label == part.label) {
@@ -440,8 +439,8 @@ void write_anew(const std::vector<ShardFile>& shards, const std::string& output,
         // Formats without indices count each file from 0.
         const LayerStack& known = file.planes;
         const std::uint64_t moved = next > known.front().index ? next - known.front().index : 0;
-        const PlaneSink write = [&](std::size_t i, ScanVectors of_file) {
-            ScanVectors plane = plane_of(file, i, std::move(of_file), parts);
+        const PlaneSink write = [&](std::size_t i, Plane of_file) {
+            Plane plane = plane_of(file, i, std::move(of_file), parts);
             for (Layer& layer : plane.polylines) {
                 layer.index += moved;
                 if (i == 0 && std::abs(layer.bottom - top) <= rounded)

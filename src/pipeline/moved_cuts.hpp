@@ -122,8 +122,8 @@ inline LayerStack sections_of(const VerifyOptions& options, const Plan& plan, co
         return layers;
     }
     const LayerSink keep = appending_to(layers);
-    const PlateSink of_parts{.prepare = [&](std::span<const Layer> bodies) {
-        const ClosedPlane closed = close_gaps_on_plane(bodies, within, limits);
+    const PlateSink of_parts{.prepare = [&](const Plane& bodies) {
+        const ClosedPlane closed = close_gaps_on_plane(bodies.polylines, within, limits);
         return keep.prepare(merged(material_of(closed.layers, options.plate->negatives, {}, limits).parts));
     }};
     slice_to(of_parts, *options.plate, plan, {.execution = execution});

@@ -61,8 +61,8 @@ PlaneVectors scan_plane(const PlaneLayers& plane, const std::vector<bool>& suppo
         vectors.unreached_mm2.push_back(sum > strategy.accepted_mm2 ? sum : 0);
         vectors.inverted.push_back(plane.parts[part].inverted());
         const std::size_t first = supports[part] ? of_supports : 0;
-        assert(scanned.vectors.exposures() == (supports[part] ? each.size() : of_supports) - first);
-        for (std::size_t i = 0; i < scanned.vectors.exposures(); ++i) {
+        assert(scanned.vectors.parts() == (supports[part] ? each.size() : of_supports) - first);
+        for (std::size_t i = 0; i < scanned.vectors.parts(); ++i) {
             const Layer& polylines = scanned.vectors.polylines[i];
             const PointArray& hatches = scanned.vectors.hatches[i];
             ScanFigures& figures = vectors.figures[first + i];

@@ -25,7 +25,7 @@ struct PlaneLayers {
 };
 
 struct PlaneVectors {
-    ScanVectors vectors;              ///< of the exposures of each part, part by part
+    Plane vectors;                    ///< of the exposures of each part, part by part
     std::vector<ScanFigures> figures; ///< one for each of `plane_exposures`
     /// Area of each part that no vector reaches; 0 if the strategy accepts it.
     std::vector<double> unreached_mm2;

@@ -94,7 +94,7 @@ Layer moved(const Layer& layer, double dx, double dy) {
 
 LayerSink single(const PlateSink& sink) {
     return {.prepare = [&sink](Layer&& layer) {
-        return sink.prepare(std::span<const Layer>(&layer, 1));
+        return sink.prepare(std::move(layer));
     }};
 }
 
@@ -215,7 +215,7 @@ void emit(const PlateSink& sink, const Plate& plate, const Plan& plan, PlaneRang
         for (auto& [planes, layers] : shapes) // no other thread reads this plane
             if (planes.begin <= plane && plane < planes.end)
                 layers[plane - planes.begin] = {};
-        delivery.deliver(static_cast<std::uint32_t>(i), sink.prepare(parts));
+        delivery.deliver(static_cast<std::uint32_t>(i), sink.prepare(Plane(std::move(parts))));
     });
     executor.check_cancelled();
 }
@@ -365,8 +365,8 @@ SliceReport slice_to(const LayerSink& sink, const Plate& plate, const Plan& plan
     if (plate.parts.empty())
         return slice_to(sink, Mesh(), plan, options);
     LayerCounter counter(sink);
-    const PlateSink of_plate{.prepare = [&](std::span<const Layer> bodies) {
-        std::vector<Layer> parts = material_of(bodies, plate.negatives).parts;
+    const PlateSink of_plate{.prepare = [&](const Plane& bodies) {
+        std::vector<Layer> parts = material_of(bodies.polylines, plate.negatives).parts;
         return counter.prepare(parts.size() == 1 ? std::move(parts.front()) : merged(parts));
     }};
     SliceReport report = slice_to(of_plate, plate, plan, options);
@@ -389,10 +389,7 @@ PlaneSource planes_of(const Plate& plate, const Plan& plan, const Execution& exe
         };
         std::for_each(parts.begin(), parts.end(), add);
         std::for_each(negatives.begin(), negatives.end(), add);
-        ScanVectors plane;
-        plane.polylines = material_of(bodies, negatives).parts;
-        plane.hatches.resize(plane.polylines.size());
-        return plane;
+        return Plane(material_of(bodies, negatives).parts);
     };
     return source;
 }

@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include <cstdint>
+#include <memory>
 #include <utility>
 #include <vector>
 
@@ -40,20 +41,15 @@ std::vector<std::string> names_of(const LayerFileInfo& info, const std::string& 
     return names;
 }
 
-} // namespace
-
-FileResult scan_layers(const std::string& path, const LayerFormat& format, const PlaneSource& source,
-                       const ScanStrategy& strategy, const LayerWriteOptions& options,
-                       const Execution& execution, std::uint64_t max_memory) {
-    const Stopwatch total;
-    check_strategy(strategy);
-    const LayerFileInfo info = info_of(source);
+/// Computes the scan vectors of all planes for an output whose coordinates have the rounding `written`.
+FileResult scan_to(JobOutput& output, const LayerFileInfo& info, const Rounding& written,
+                   const PlaneSource& source, const ScanStrategy& strategy, const Execution& execution,
+                   std::uint64_t max_memory) {
     FileResult result;
     result.threads = thread_count(source.for_planes(execution));
-    const OutputFiles files{.path = path, .format = &format, .write = options};
     LayerJob job{.names = names_of(info, source.path),
                  .rounding = source.rounding,
-                 .written = files.rounding(),
+                 .written = written,
                  .of_mesh = false,
                  .scan = strategy,
                  .statistics = true,
@@ -67,20 +63,68 @@ FileResult scan_layers(const std::string& path, const LayerFormat& format, const
     for (const Layer& layer : source.planes)
         planes.push_back({layer.index, layer.z, layer.bottom, layer.top});
     const PlaneRange all{0, static_cast<std::uint32_t>(planes.size())};
-    JobOutput output(files, with_exposures(info, strategy));
     LayerProcessor processor(std::move(job), planes, all, all, output);
-    const PlaneSink process = [&](std::size_t plane, const ScanVectors& layers) {
-        return processor.prepare(static_cast<std::uint32_t>(plane), layers.polylines);
+    const PlaneSink process = [&](std::size_t position, Plane plane) {
+        return processor.prepare(static_cast<std::uint32_t>(position), std::move(plane));
     };
     source.run(Stage::write, process, execution);
     processor.set_times(result.seconds);
     processor.totals().store_in(result);
+    return result;
+}
+
+/// Keeps planes in memory.
+class PlaneKeeper final : public LayerWriter {
+  public:
+    explicit PlaneKeeper(std::vector<Plane>& planes) : planes_(planes) {}
+
+    [[nodiscard]] Commit prepare(const Plane& plane) override {
+        return [this, plane] {
+            planes_.push_back(plane);
+        };
+    }
+    void finish() override {}
+    [[nodiscard]] std::uint64_t bytes() const noexcept override { return 0; }
+
+  private:
+    std::vector<Plane>& planes_;
+};
+
+} // namespace
+
+FileResult scan_layers(const std::string& path, const LayerFormat& format, const PlaneSource& source,
+                       const ScanStrategy& strategy, const LayerWriteOptions& options,
+                       const Execution& execution, std::uint64_t max_memory) {
+    const Stopwatch total;
+    check_strategy(strategy);
+    const LayerFileInfo info = info_of(source);
+    const OutputFiles files{.path = path, .format = &format, .write = options};
+    JobOutput output(files, with_exposures(info, strategy));
+    FileResult result = scan_to(output, info, files.rounding(), source, strategy, execution, max_memory);
     if (const Finding* found = result.findings.first(Severity::warning); options.strict && found != nullptr)
         throw Error(ErrorKind::defect,
                     fmt::format("{}: {}", source.path.empty() ? path : source.path, found->text()));
     output.finish_file(result);
     result.seconds.total = total.seconds();
     return result;
+}
+
+ScannedLayers scan_layers(const PlaneSource& source, const ScanStrategy& strategy, const Execution& execution,
+                          std::uint64_t max_memory) {
+    const Stopwatch total;
+    check_strategy(strategy);
+    const LayerFileInfo info = info_of(source);
+    const LayerFileInfo exposed = with_exposures(info, strategy);
+    std::vector<Plane> planes;
+    const OutputFiles none;
+    JobOutput output(none, exposed, std::make_unique<PlaneKeeper>(planes));
+    FileResult result = scan_to(output, info, {}, source, strategy, execution, max_memory);
+    ScannedLayers scanned{source_of(std::move(planes), exposed.parts, source.path, execution), {}};
+    scanned.vectors.rounding = source.rounding;
+    scanned.vectors.rule = source.rule;
+    scanned.figures = std::move(result);
+    scanned.figures.seconds.total = total.seconds();
+    return scanned;
 }
 
 } // namespace lamella

@@ -20,10 +20,10 @@ bool can_be_shared(const std::string& path) {
     return path != "-" && (!std::filesystem::exists(status) || std::filesystem::is_regular_file(status));
 }
 
-std::string packed(std::span<const Layer> parts, std::span<const PointArray> hatches) {
+std::string packed(const Plane& plane) {
     Packer packer;
-    packer.put(std::uint64_t{parts.size()}).put(std::uint64_t{hatches.size()});
-    for (const Layer& layer : parts)
+    packer.put(std::uint64_t{plane.parts()});
+    for (const Layer& layer : plane.polylines)
         packer.put(layer.index)
             .put(layer.z)
             .put(layer.bottom)
@@ -31,18 +31,14 @@ std::string packed(std::span<const Layer> parts, std::span<const PointArray> hat
             .put(std::uint64_t{layer.rings})
             .put_all(std::span(layer.offsets))
             .put_all(layer.points.span());
-    for (const PointArray& lines : hatches)
+    for (const PointArray& lines : plane.hatches)
         packer.put_all(lines.span());
     return packer.take();
 }
 
-/// Returns layers without hatch lines as vectors without them.
-ScanVectors unpacked(Unpacker& unpacker) {
-    ScanVectors vectors;
-    vectors.polylines.resize(unpacker.get<std::uint64_t>());
-    vectors.hatches.resize(vectors.polylines.size());
-    const auto hatches = unpacker.get<std::uint64_t>();
-    for (Layer& layer : vectors.polylines) {
+Plane unpacked(Unpacker& unpacker) {
+    Plane plane(std::vector<Layer>(unpacker.get<std::uint64_t>()));
+    for (Layer& layer : plane.polylines) {
         layer.index = unpacker.get<std::uint64_t>();
         layer.z = unpacker.get<double>();
         layer.bottom = unpacker.get<double>();
@@ -51,9 +47,9 @@ ScanVectors unpacked(Unpacker& unpacker) {
         layer.offsets = unpacker.get_all<std::uint64_t>();
         layer.points = PointArray(unpacker.get_all<Point2>());
     }
-    for (std::uint64_t i = 0; i < hatches; ++i)
-        vectors.hatches[i] = PointArray(unpacker.get_all<Point2>());
-    return vectors;
+    for (PointArray& lines : plane.hatches)
+        lines = PointArray(unpacker.get_all<Point2>());
+    return plane;
 }
 
 void put(Packer& to, const std::string& text) {
@@ -147,12 +143,8 @@ SharedWriter::SharedWriter(const OutputFiles& files, LayerFileInfo info, PlaneRa
     processes.gather({}); // a file that cannot be written is reported before hours of slicing
 }
 
-Commit SharedWriter::prepare(std::span<const Layer> parts) {
-    return writer_ ? writer_->prepare(parts) : kept(packed(parts, {}));
-}
-
-Commit SharedWriter::prepare(const ScanVectors& vectors) {
-    return writer_ ? writer_->prepare(vectors) : kept(packed(vectors.polylines, vectors.hatches));
+Commit SharedWriter::prepare(const Plane& plane) {
+    return writer_ ? writer_->prepare(plane) : kept(packed(plane));
 }
 
 Commit SharedWriter::kept(std::string plane) {

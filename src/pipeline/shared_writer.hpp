@@ -31,8 +31,7 @@ class SharedWriter final : public LayerWriter {
     SharedWriter(const OutputFiles& files, LayerFileInfo info, PlaneRange mine, Agreement& processes,
                  std::uint64_t most_in_memory);
 
-    [[nodiscard]] Commit prepare(std::span<const Layer> parts) override;
-    [[nodiscard]] Commit prepare(const ScanVectors& vectors) override;
+    [[nodiscard]] Commit prepare(const Plane& plane) override;
     void finish() override;
     /// Returns the size of the whole file after `finish`.
     [[nodiscard]] std::uint64_t bytes() const noexcept override { return bytes_; }

@@ -216,9 +216,8 @@ Verification verify(const PlaneSource& source, const VerifyOptions& options, con
     std::vector<CheckedLayer> checks(layers.size());
     const LayerLimits limits =
         layer_limits(execution, options.max_memory, thread_count(source.for_planes(execution)));
-    const PlaneVisitor check_plane = [&](std::size_t i, ScanVectors plane, unsigned) {
-        const Layer layer =
-            plane.exposures() == 1 ? std::move(plane.polylines.front()) : merged(plane.polylines);
+    const PlaneVisitor check_plane = [&](std::size_t i, Plane plane, unsigned) {
+        const Layer layer = plane.parts() == 1 ? std::move(plane.polylines.front()) : merged(plane.polylines);
         checks[i] = {check_layer(layer, options.granted(), limits)};
         if (options.mesh)
             checks[i].own = own_area(layer, checks[i].measure, frame, options);

@@ -189,7 +189,7 @@ VectorVerification verify_vectors(const PlaneSource& file, const VerifyOptions& 
     std::vector<std::vector<Layer>> sections; // of a range of planes, with a mesh
     std::uint64_t first = 0;                  // of the range
     const auto check_plane = [&](std::uint64_t i) {
-        const ScanVectors vectors = file.plane(i);
+        const Plane vectors = file.plane(i);
         const auto bounds_of = [&](const ExposureGroup& group) {
             MaterialBounds bounds;
             if (options.mesh)

@@ -332,8 +332,8 @@ struct JoinedFile {
 };
 
 /// Makes a plane of the layers of all files.
-ScanVectors joined_plane(const std::vector<JoinedFile>& files, std::size_t plane) {
-    ScanVectors vectors;
+Plane joined_plane(const std::vector<JoinedFile>& files, std::size_t plane) {
+    Plane vectors;
     for (const auto& [source, file, positions] : files) {
         if (positions[plane] != no_position)
             vectors.append(file.make(positions[plane]));

@@ -82,8 +82,8 @@ void append(std::vector<Point2>& to, std::span<const Point2> points) {
 /// Makes the layers of a plane, one for each part, and frees the contours and hatches of `plane`. Those of
 /// parts that are not `exposed` are in normal form.
 template <class Location>
-ScanVectors make_layers(const PlacedLayer& plane, const std::vector<bool>& exposed, ReadLimits& limits,
-                        const Location& location) {
+Plane make_layers(const PlacedLayer& plane, const std::vector<bool>& exposed, ReadLimits& limits,
+                  const Location& location) {
     RawLayer& raw = *plane.raw;
     // Until `raw` is freed there are two copies of its contents, and a third one of contours while they are
     // put into normal form.
@@ -126,7 +126,7 @@ ScanVectors make_layers(const PlacedLayer& plane, const std::vector<bool>& expos
     let_go(raw.ends);
     let_go(raw.hatches);
     let_go(raw.hatch_ends);
-    ScanVectors layers;
+    Plane layers;
     for (std::size_t i = 0; i < parts.size(); ++i) {
         Layer& layer = parts[i].layer;
         assert(layer.offsets.back() == points[i].size() && layer.rings <= layer.contours());
@@ -151,9 +151,8 @@ std::vector<bool> exposed_parts(const LayerFile& file) {
 }
 
 /// Returns a function that parses the layers of a plane again.
-std::function<ScanVectors(std::size_t)> parsing(std::span<const PlacedLayer> planes,
-                                                std::vector<bool> exposed, const ReadLimits& limits,
-                                                ParseLayer parse) {
+std::function<Plane(std::size_t)> parsing(std::span<const PlacedLayer> planes, std::vector<bool> exposed,
+                                          const ReadLimits& limits, ParseLayer parse) {
     std::vector<std::vector<std::size_t>> begins; // of each plane
     for (const PlacedLayer& plane : planes) {
         begins.emplace_back().push_back(plane.raw->begin);
@@ -310,7 +309,7 @@ void add_layers(LayerFile& file, std::span<const PlacedLayer> planes, ReadLimits
         file.make = parsing(planes, std::move(exposed), limits, std::move(parse));
         return;
     }
-    std::vector<ScanVectors> kept(planes.size());
+    std::vector<Plane> kept(planes.size());
     executor.for_chunks(planes.size(), 1, [&](std::uint64_t i, std::uint64_t, unsigned) {
         kept[i] = make_layers(planes[i], exposed, limits, [&] {
             const std::string& location = planes[i].raw->location;

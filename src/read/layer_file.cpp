@@ -83,7 +83,7 @@ ReadLayersOfArchive* archive_reader(const ZipReader& archive) {
 namespace {
 
 /// A function that makes a plane.
-using MakePlane = std::function<ScanVectors(std::size_t)>;
+using MakePlane = std::function<Plane(std::size_t)>;
 
 /// Returns the function that also releases the memory of the bytes of a file on disk, again and again.
 MakePlane releasing(MakePlane make, std::size_t planes, const ByteSource& source) {
@@ -92,7 +92,7 @@ MakePlane releasing(MakePlane make, std::size_t planes, const ByteSource& source
         std::max<std::uint64_t>(1, planes * most_in_memory / std::max<std::uint64_t>(1, source.size()));
     return [make = std::move(make), &source, each,
             made = std::make_shared<std::atomic<std::uint64_t>>(0)](std::size_t position) {
-        ScanVectors plane = make(position);
+        Plane plane = make(position);
         if (++*made % each == 0)
             release(source, source.bytes);
         return plane;

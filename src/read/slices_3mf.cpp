@@ -344,7 +344,7 @@ class PackageReader {
                     file_.bytes += sizeof slice + slice.layer.offsets.size() * sizeof(std::uint64_t) +
                                    slice.layer.points.size() * sizeof(Point2);
             file_.make = [drawn = std::move(drawn)](std::size_t plane) {
-                ScanVectors vectors;
+                Plane vectors;
                 for (const DrawnSlices& slices : drawn) {
                     const PlanesOfSlice* const slice = slice_on(slices, plane);
                     vectors.add(slice == nullptr ? Layer() : slice->layer, PointArray());
@@ -358,7 +358,7 @@ class PackageReader {
         file_.spare_bytes = limits_.bytes_left();
         file_.make = [drawn = std::move(drawn), placed = std::move(placed_), name = zip_.name(),
                       &limits = limits_](std::size_t plane) {
-            ScanVectors vectors;
+            Plane vectors;
             for (std::size_t k = 0; k < placed.size(); ++k) {
                 const PlanesOfSlice* const slice = slice_on(drawn[k], plane);
                 vectors.add(slice == nullptr ? Layer() : placed_layer(placed[k], *slice->slice, limits, name),

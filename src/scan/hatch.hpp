@@ -31,7 +31,7 @@ struct HatchArea {
 /// whose size is an integer multiple of the distance meet without a gap and without an overlap.
 [[nodiscard]] double line_phase(HatchPattern pattern) noexcept;
 
-/// Returns the hatch lines, two points each, as in ScanVectors::hatches. The index of `within` defines the
+/// Returns the hatch lines, two points each, as in Plane::hatches. The index of `within` defines the
 /// rotation of the lines and, with the seed, the order of islands. Throws the errors of HatchLines, and
 /// Error{limit} for more than 2^28 stripes or islands in a row, 2^22 pieces of lines or 2^21 islands, or more
 /// pieces or islands than the budget allows.

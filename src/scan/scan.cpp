@@ -242,18 +242,18 @@ PointArray pieces_of(const std::vector<std::vector<Point2>>& lines) {
 }
 
 /// Returns what all vectors of a layer reach in the file that stores them.
-Reached reached_by(const ScanVectors& vectors, std::span<const Exposure> all, const ScanStrategy& strategy,
+Reached reached_by(const Plane& vectors, std::span<const Exposure> all, const ScanStrategy& strategy,
                    const Rounding& written, const LayerBudget& budget) {
     std::uint64_t count = 0;
     double largest = 0;
-    for (std::size_t i = 0; i < vectors.exposures(); ++i) {
+    for (std::size_t i = 0; i < vectors.parts(); ++i) {
         count += 3 * vectors.polylines[i].points.size() + vectors.hatches[i].size() / 2;
         largest = std::max({largest, largest_coordinate(vectors.polylines[i].points.span()),
                             largest_coordinate(vectors.hatches[i].span())});
     }
     budget.need(count, sizeof(Stroke), "scan vectors");
     Reached reached;
-    for (std::size_t i = 0; i < vectors.exposures(); ++i)
+    for (std::size_t i = 0; i < vectors.parts(); ++i)
         reached.add(vectors.polylines[i], vectors.hatches[i].span(),
                     moved_point(largest, written) +
                         (all[i].kind == VectorKind::hatch
@@ -408,7 +408,7 @@ ScannedLayer scan(const ScanLayer& scanned, std::span<const ScanLayer> below,
         return hatch(area, rule, strategy.seed, budget);
     };
     const std::vector<Exposure> all = exposures(strategy, {});
-    ScanVectors result;
+    Plane result;
     const auto add = [&](Layer polylines, PointArray hatches) {
         budget.need((polylines.points.size() + hatches.size()) / 2, 2 * bytes_of_vector_point, "scan vectors",
                     "a larger `hatch.distance`");

@@ -92,9 +92,9 @@ void for_each_contour(const Layer& layer, Sequence sequence, const Write& write)
 }
 
 template <class Format>
-void for_each_part(const PlaneView& plane, const Format& format) {
-    for (std::size_t i = 0; i < plane.layers.size(); ++i)
-        format(plane.layers[i], plane.hatches_of(i), first_part + static_cast<int>(i));
+void for_each_part(const Plane& plane, const Format& format) {
+    for (std::size_t i = 0; i < plane.polylines.size(); ++i)
+        format(plane.polylines[i], plane.hatches[i].span(), first_part + static_cast<int>(i));
 }
 
 // The content of one command, on a grid: a polyline or, without a direction, hatch lines. It is passed by
@@ -151,7 +151,7 @@ class CommonLayerWriter : public SequentialWriter {
     // Calls put(listed) for each contour of each part that does not vanish on the grid, and for the hatch
     // lines of each part.
     template <class Put>
-    void for_each_on_grid(const WriterGrid& grid, const PlaneView& plane, const Put& put) const {
+    void for_each_on_grid(const WriterGrid& grid, const Plane& plane, const Put& put) const {
         std::vector<GridPoint> scratch;
         for_each_part(plane, [&](const Layer& layer, std::span<const Point2> hatches, int part) {
             for_each_contour(layer, sequence_of(part), [&](std::span<const Point2> contour, bool closed) {
@@ -190,7 +190,7 @@ class AsciiWriter final : public CommonLayerWriter {
         return fmt::format("$$LAYER/{}\n", position_text(offset.top, units_));
     }
 
-    void format(const PlaneView& plane, ByteBuffer& out) const override {
+    void format(const Plane& plane, ByteBuffer& out) const override {
         for_each_on_grid(grid_, plane, [&](const Listed& listed) { put_command(listed, out); });
     }
 
@@ -266,7 +266,7 @@ class LongWriter final : public CommonLayerWriter {
         return layer_start(checked_height(offset, [this](double mm) { return height_of(mm, units_); }));
     }
 
-    void format(const PlaneView& plane, ByteBuffer& out) const override {
+    void format(const Plane& plane, ByteBuffer& out) const override {
         for_each_part(plane, [&](const Layer& layer, std::span<const Point2> hatches, int part) {
             // Reserves the space for all points at once, since most layers lose none.
             static_cast<void>(out.room(layer.contours() * (long_header + float_point_size) +
@@ -377,7 +377,7 @@ class ShortWriter final : public CommonLayerWriter {
         return layer_start(height);
     }
 
-    void format(const PlaneView& plane, ByteBuffer& out) const override {
+    void format(const Plane& plane, ByteBuffer& out) const override {
         for_each_on_grid(grid_, plane, [&](const Listed& listed) { put_command(listed, out); });
     }
 

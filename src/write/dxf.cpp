@@ -38,9 +38,9 @@ class DxfWriter final : public SequentialWriter {
 
     std::string layer_header(const PlanePosition&) override { return {}; }
 
-    void format(const PlaneView& plane, ByteBuffer& out) const override {
-        for (std::size_t part = 0; part < plane.layers.size(); ++part)
-            format_part(plane.layers[part], part, out);
+    void format(const Plane& plane, ByteBuffer& out) const override {
+        for (std::size_t part = 0; part < plane.polylines.size(); ++part)
+            format_part(plane.polylines[part], part, out);
     }
 
     // Returns a name of at most 31 letters, digits and underscores.

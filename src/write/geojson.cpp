@@ -67,11 +67,11 @@ class GeoJsonWriter final : public SequentialWriter {
         return place.position == 0 ? "\n" : ",\n";
     }
 
-    void format(const PlaneView& plane, ByteBuffer& out) const override {
-        for (std::size_t part = 0; part < plane.layers.size(); ++part) {
+    void format(const Plane& plane, ByteBuffer& out) const override {
+        for (std::size_t part = 0; part < plane.polylines.size(); ++part) {
             if (part > 0)
                 out.append(",\n");
-            format_part(plane.layers[part], part, out);
+            format_part(plane.polylines[part], part, out);
         }
     }
 

@@ -166,13 +166,13 @@ class IltWriter final : public OrderedWriter {
         std::vector<FileExtent> waiting;
     };
 
-    Write formatted(const PlaneView& plane) override {
+    Write formatted(const Plane& plane) override {
         std::vector<Commit> commits;
         for (std::size_t i = 0; i < sections_.size(); ++i) {
-            ScanVectors vectors;
+            Plane some;
             for (const std::size_t part : sections_[i].parts)
-                vectors.add(plane.layers[part], plane.hatches.empty() ? PointArray() : plane.hatches[part]);
-            commits.push_back(entries_[i].writer->prepare(vectors));
+                some.add(plane.polylines[part], plane.hatches[part]);
+            commits.push_back(entries_[i].writer->prepare(some));
         }
         return [this, commits = std::move(commits)](const PlanePosition& offset, Completions& after) {
             check_apart(offset);

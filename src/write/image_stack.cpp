@@ -86,11 +86,11 @@ class ImageStackWriter final : public OrderedWriter {
     std::uint64_t bytes() const noexcept override { return folder_ ? folder_->bytes() : archive_->bytes(); }
 
   private:
-    Write formatted(const PlaneView& plane) override {
-        LayerImage image = images_.image(plane.layers);
+    Write formatted(const Plane& plane) override {
+        LayerImage image = images_.image(plane.polylines);
         // In a folder each layer has a file of its own, which can be written in any order.
         if (folder_)
-            folder_->write(image_name(plane.layers.front().index), image.file->view());
+            folder_->write(image_name(plane.polylines.front().index), image.file->view());
         return [this, image = std::move(image)](const PlanePosition& offset, Completions& after) {
             if (archive_)
                 archive_->add_ready(image_name(offset.index), ZipMethod::stored, image.in_zip(), image.file,

@@ -55,7 +55,7 @@ struct Image {
 constexpr std::size_t most_marks = 1000;
 
 /// Fills in the figures and defects of a plane, and appends the locations of the first crossings.
-void look_at(const PlaneView& plane, std::span<const PartInfo> parts, PlaneFacts& facts,
+void look_at(const Plane& plane, std::span<const PartInfo> parts, PlaneFacts& facts,
              std::vector<Point2>& positions) {
     const auto look_for_crossings = [&](const Layer& layer) {
         const Crossings crossings = find_crossings(layer, most_marks - positions.size());
@@ -65,9 +65,9 @@ void look_at(const PlaneView& plane, std::span<const PartInfo> parts, PlaneFacts
     };
     std::optional<Point2> beam;
     std::vector<Layer> bounding; // layers that bound material, which are checked together
-    for (std::size_t i = 0; i < plane.layers.size(); ++i) {
-        const Layer& layer = plane.layers[i];
-        const std::span<const Point2> hatches = plane.hatches_of(i);
+    for (std::size_t i = 0; i < plane.polylines.size(); ++i) {
+        const Layer& layer = plane.polylines[i];
+        const std::span<const Point2> hatches = plane.hatches[i].span();
         facts.hatches += hatches.size() / 2;
         if (parts[i].exposure) {
             look_for_crossings(layer);
@@ -101,8 +101,7 @@ void look_at(const PlaneView& plane, std::span<const PartInfo> parts, PlaneFacts
 /// total. Remaining contours keep their order, since the page shows the order of scan vectors.
 class Thinning {
   public:
-    Thinning(const PlaneView& plane, double step_mm)
-        : layers_(plane.layers.begin(), plane.layers.end()), hatches_(plane.hatches), step_mm_(step_mm) {}
+    Thinning(Plane plane, double step_mm) : plane_(std::move(plane)), step_mm_(step_mm) {}
 
     /// The first call drops hatches, if there are any. Later calls simplify to a tolerance of one step, then
     /// to four times the previous tolerance, which halves the number of points of curves. Specks are dropped
@@ -111,7 +110,7 @@ class Thinning {
         if (drop_hatches())
             return;
         const double tolerance = tolerance_mm_ == 0 ? step_mm_ : 4 * tolerance_mm_;
-        for (Layer& layer : layers_) {
+        for (Layer& layer : plane_.polylines) {
             layer = simplify_each(layer, tolerance - tolerance_mm_);
             if (tolerance > steps_of_specks * step_mm_)
                 layer = without_small_rings(layer, tolerance * tolerance);
@@ -119,22 +118,22 @@ class Thinning {
         tolerance_mm_ = tolerance;
     }
     [[nodiscard]] bool at_end() const noexcept { return tolerance_mm_ >= most_steps * step_mm_; }
-    [[nodiscard]] PlaneView plane() const noexcept { return {layers_, hatches_}; }
+    [[nodiscard]] const Plane& plane() const noexcept { return plane_; }
     [[nodiscard]] double tolerance_mm() const noexcept { return tolerance_mm_; }
 
   private:
     /// Drops the hatches; returns whether there were any.
     bool drop_hatches() {
-        const std::span<const PointArray> hatches = std::exchange(hatches_, {});
-        return std::any_of(hatches.begin(), hatches.end(),
-                           [](const PointArray& lines) { return !lines.empty(); });
+        bool any = false;
+        for (PointArray& lines : plane_.hatches)
+            any |= !std::exchange(lines, {}).empty();
+        return any;
     }
 
     static constexpr double steps_of_specks = 7.5;
     static constexpr double most_steps = 512; // a hundredth of the part
 
-    std::vector<Layer> layers_;
-    std::span<const PointArray> hatches_;
+    Plane plane_;
     double step_mm_;
     double tolerance_mm_ = 0;
 };
@@ -195,12 +194,12 @@ class Budget {
 /// Returns versions of a plane: the complete plane, then versions with less and less detail. The last version
 /// costs at most `thinned`, or at most four times as many bytes if further thinning saves little; or it
 /// cannot be thinned any further.
-std::vector<Image> images_of(const PlaneView& whole, std::span<const PartInfo> infos,
+std::vector<Image> images_of(const Plane& whole, std::span<const PartInfo> infos,
                              std::span<const Point2> positions, const PageGrid& grid, const Cost& thinned) {
-    const auto image = [&](const PlaneView& plane, double tolerance) {
+    const auto image = [&](const Plane& plane, double tolerance) {
         Image made{.bytes = {}, .tolerance_mm = tolerance};
         made.bytes = deflated(layer_numbers(plane, infos, positions, grid, made.shown).view());
-        for (const Layer& layer : plane.layers)
+        for (const Layer& layer : plane.polylines)
             made.contours_shown += layer.contours();
         for (const PointArray& hatches : plane.hatches)
             made.hatches_shown += hatches.size() / 2;
@@ -288,7 +287,7 @@ class PlaneTable {
             by_index[change.index] += change.changes;
         std::string dropped;
         std::string before;
-        for (const Plane& plane : planes_) {
+        for (const StoredPlane& plane : planes_) {
             const LayerChanges& change = by_index[plane.index];
             append(dropped, std::to_string(change.rings_dropped));
             // The figures cover changed parts only; unchanged parts cancel in the difference.
@@ -297,7 +296,7 @@ class PlaneTable {
         return column("rings_dropped", dropped) + "," + column("area_before_mm2", before);
     }
 
-    struct Plane {
+    struct StoredPlane {
         std::uint64_t index;
         double area_mm2;
     };
@@ -310,7 +309,7 @@ class PlaneTable {
         "vectors",        "marked_mm", "jumped_mm",      "build_seconds", "energy_j"};
     std::size_t shown_;
     std::array<std::string, columns.size()> texts_;
-    std::vector<Plane> planes_;
+    std::vector<StoredPlane> planes_;
 };
 
 class PageWriter final : public LayerPageWriter {
@@ -323,15 +322,18 @@ class PageWriter final : public LayerPageWriter {
         file_.append(json_element("head", header(info, options)));
     }
 
-    [[nodiscard]] Commit prepare(std::span<const Layer> parts) override {
-        order_.check_parts(parts);
-        return prepare_view({parts});
+    [[nodiscard]] Commit prepare(const Plane& plane) override {
+        order_.check_parts(plane);
+        PlaneFacts facts{.position = plane_position(plane)};
+        std::vector<Point2> positions;
+        look_at(plane, parts_, facts, positions);
+        return
+            [this, facts, images = images_of(plane, parts_, positions, grid_, budget_.thinned())]() mutable {
+                order_.next(facts.position);
+                write(facts, images);
+            };
     }
 
-    [[nodiscard]] Commit prepare(const ScanVectors& vectors) override {
-        order_.check_parts(vectors);
-        return prepare_view({vectors.polylines, vectors.hatches});
-    }
     void add_notes(PageNotes notes) override {
         std::move(notes.sections.begin(), notes.sections.end(), std::back_inserter(notes_.sections));
         std::move(notes.locations.begin(), notes.locations.end(), std::back_inserter(notes_.locations));
@@ -365,17 +367,6 @@ class PageWriter final : public LayerPageWriter {
     }
 
   private:
-    [[nodiscard]] Commit prepare_view(const PlaneView& plane) {
-        PlaneFacts facts{.position = plane_position(plane.layers)};
-        std::vector<Point2> positions;
-        look_at(plane, parts_, facts, positions);
-        return
-            [this, facts, images = images_of(plane, parts_, positions, grid_, budget_.thinned())]() mutable {
-                order_.next(facts.position);
-                write(facts, images);
-            };
-    }
-
     [[nodiscard]] bool has_vectors() const {
         return std::any_of(parts_.begin(), parts_.end(),
                            [](const PartInfo& part) { return part.exposure.has_value(); });

@@ -217,9 +217,7 @@ class LimitedWriter final : public LayerWriter {
         : writer_(std::move(writer)), path_(std::move(path)), keeps_cuts_(format.cuts),
           most_bytes_(options.most_bytes), strict_(options.strict) {}
 
-    Commit prepare(std::span<const Layer> parts) override { return limited(writer_->prepare(parts)); }
-
-    Commit prepare(const ScanVectors& vectors) override { return limited(writer_->prepare(vectors)); }
+    Commit prepare(const Plane& plane) override { return limited(writer_->prepare(plane)); }
 
     void finish() override {
         if (strict_)
@@ -377,35 +375,12 @@ std::unique_ptr<LayerWriter> open_layer_writer(const std::string& path, const La
     return std::make_unique<LimitedWriter>(std::move(writer), path, format, options);
 }
 
-namespace {
-
-/// Calls `prepare(plane)` on all threads, and calls the commits in ascending order of planes.
-template <class Prepare>
-void write_in_order(std::size_t planes, const Prepare& prepare, const Execution& execution) {
+void write_planes(LayerWriter& writer, std::span<const Plane> planes, const Execution& execution) {
     Executor executor(execution);
-    ProgressMeter progress(execution, Stage::write, planes);
-    run_in_order(executor, progress, planes, prepare);
+    ProgressMeter progress(execution, Stage::write, planes.size());
+    run_in_order(executor, progress, planes.size(),
+                 [&](std::uint64_t i) { return writer.prepare(planes[i]); });
     progress.finish();
-}
-
-/// Writes a whole file; `prepare(writer, plane)` formats a plane.
-template <class Prepare>
-std::vector<std::string> write_file(const std::string& path, const LayerFormat& format, std::size_t planes,
-                                    const LayerFileInfo& info, const LayerWriteOptions& options,
-                                    const Execution& execution, const Prepare& prepare) {
-    const std::unique_ptr<LayerWriter> writer = open_layer_writer(path, format, info, options);
-    write_in_order(
-        planes, [&](std::size_t plane) { return prepare(*writer, plane); }, execution);
-    writer->finish();
-    return writer->warnings();
-}
-
-} // namespace
-
-void write_planes(LayerWriter& writer, std::size_t planes,
-                  const std::function<ScanVectors(std::size_t)>& plane_of, const Execution& execution) {
-    write_in_order(
-        planes, [&](std::size_t i) { return writer.prepare(plane_of(i)); }, execution);
 }
 
 std::vector<std::string> write_layers(const std::string& path, std::span<const Layer> layers,
@@ -418,35 +393,17 @@ std::vector<std::string> write_layers(const std::string& path, std::span<const L
     info.box.min.z = info.bottom;
     info.box.max.z = layers.back().top;
     info.parts.front().box = info.box;
-    return write_layers(path, layer_format("", path), layers, info, options, execution);
+    return write_layers(path, layer_format("", path), std::vector<Plane>(layers.begin(), layers.end()), info,
+                        options, execution);
 }
 
 std::vector<std::string> write_layers(const std::string& path, const LayerFormat& format,
-                                      std::span<const Layer> layers, const LayerFileInfo& info,
+                                      std::span<const Plane> planes, const LayerFileInfo& info,
                                       const LayerWriteOptions& options, const Execution& execution) {
-    return write_file(path, format, layers.size(), info, options, execution,
-                      [&](LayerWriter& writer, std::size_t i) { return writer.prepare(layers[i]); });
-}
-
-std::vector<std::string> write_layers(const std::string& path, const LayerFormat& format,
-                                      std::span<const ScanVectors> planes, const LayerFileInfo& info,
-                                      const LayerWriteOptions& options, const Execution& execution) {
-    return write_file(path, format, planes.size(), info, options, execution,
-                      [&](LayerWriter& writer, std::size_t i) { return writer.prepare(planes[i]); });
-}
-
-std::vector<std::string> write_layers(const std::string& path, const LayerFormat& format,
-                                      std::span<const LayerStack> parts, const LayerFileInfo& info,
-                                      const LayerWriteOptions& options, const Execution& execution) {
-    check_same_planes(parts, info);
-    return write_file(path, format, parts.empty() ? 0 : parts.front().size(), info, options, execution,
-                      [&](LayerWriter& writer, std::size_t i) {
-                          std::vector<Layer> plane;
-                          plane.reserve(parts.size());
-                          for (const LayerStack& part : parts)
-                              plane.push_back(part[i]);
-                          return writer.prepare(plane);
-                      });
+    const std::unique_ptr<LayerWriter> writer = open_layer_writer(path, format, info, options);
+    write_planes(*writer, planes, execution);
+    writer->finish();
+    return writer->warnings();
 }
 
 } // namespace lamella

@@ -117,11 +117,11 @@ class LayeredSvgWriter final : public SequentialWriter {
             height_text(place.top - place.bottom));
     }
 
-    void format(const PlaneView& plane, ByteBuffer& out) const override {
-        for (std::size_t part = 0; part < plane.layers.size(); ++part) {
+    void format(const Plane& plane, ByteBuffer& out) const override {
+        for (std::size_t part = 0; part < plane.polylines.size(); ++part) {
             if (!part_heads_.empty())
                 out.append(part_heads_[part]);
-            format_part(plane.layers[part], exposed_[part], out);
+            format_part(plane.polylines[part], exposed_[part], out);
             if (!part_heads_.empty())
                 out.append("    </g>\n");
         }
@@ -192,10 +192,10 @@ class SvgLayersWriter final : public OrderedWriter {
 
   private:
     // Each layer has a file of its own, which can be written in any order.
-    Write formatted(const PlaneView& plane) override {
+    Write formatted(const Plane& plane) override {
         const std::shared_ptr<ByteBuffer> text = buffer();
-        format(plane.layers, *text);
-        directory_.write(fmt::format("layer_{:05}.svg", plane.layers.front().index), text->view());
+        format(plane.polylines, *text);
+        directory_.write(fmt::format("layer_{:05}.svg", plane.polylines.front().index), text->view());
         return [](const PlanePosition&, Completions&) {
         };
     }

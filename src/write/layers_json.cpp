@@ -50,10 +50,10 @@ class LayersJsonWriter final : public SequentialWriter {
                            shortest_text(place.bottom), shortest_text(place.top));
     }
 
-    void format(const PlaneView& plane, ByteBuffer& out) const override {
-        for (std::size_t part = 0; part < plane.layers.size(); ++part) {
-            const Layer& layer = plane.layers[part];
-            const std::span<const Point2> hatches = plane.hatches_of(part);
+    void format(const Plane& plane, ByteBuffer& out) const override {
+        for (std::size_t part = 0; part < plane.polylines.size(); ++part) {
+            const Layer& layer = plane.polylines[part];
+            const std::span<const Point2> hatches = plane.hatches[part].span();
             out.append(part == 0 ? "{\"rings\":[" : ",{\"rings\":[");
             put_contours(layer, 0, layer.rings, out);
             if (layer.open_chains() > 0) {

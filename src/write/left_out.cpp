@@ -91,8 +91,8 @@ void WriteLosses::add(const WriteLosses& above) {
     top = above.top;
 }
 
-WriteLosses losses_of_plane(const PlaneView& view) {
-    const Layer& plane = view.layers.front();
+WriteLosses losses_of_plane(const Plane& whole) {
+    const Layer& plane = whole.polylines.front();
     WriteLosses losses;
     const auto add = [&](FindingKind kind, std::uint64_t count) {
         if (count > 0)
@@ -102,9 +102,9 @@ WriteLosses losses_of_plane(const PlaneView& view) {
     losses.first_z = plane.z;
     losses.bottom = plane.bottom;
     losses.top = plane.top;
-    for (const Layer& layer : view.layers)
+    for (const Layer& layer : whole.polylines)
         add(FindingKind::unwritten_chains, layer.open_chains());
-    for (const PointArray& hatches : view.hatches)
+    for (const PointArray& hatches : whole.hatches)
         add(FindingKind::unwritten_hatch_lines, hatches.size() / 2);
     const auto is_at = [&](double z) {
         return std::abs(plane.z - z) <= same_height_mm;

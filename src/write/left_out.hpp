@@ -5,7 +5,6 @@
 #include "lamella/contour/layer.hpp"
 #include "lamella/write/layer_writer.hpp"
 
-#include "write/plane_view.hpp"
 #include "write/rounding_loss.hpp"
 
 #include <span>
@@ -44,7 +43,7 @@ struct Holds {
 [[nodiscard]] std::string label_in_file(const PartInfo& part, const Holds& holds);
 
 /// Returns the content of a plane that some formats cannot hold, except gaps and rounding.
-[[nodiscard]] WriteLosses losses_of_plane(const PlaneView& plane);
+[[nodiscard]] WriteLosses losses_of_plane(const Plane& plane);
 
 /// Counts content that a file leaves out. Planes must be added in ascending z.
 class LeftOut {

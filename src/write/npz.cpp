@@ -78,15 +78,13 @@ class NpzWriter final : public OrderedWriter {
     std::uint64_t bytes() const noexcept override { return zip_.bytes() + waiting_; }
 
   private:
-    Write formatted(const PlaneView& plane) override {
+    Write formatted(const Plane& plane) override {
         using Part = std::pair<Layer, std::uint32_t>; // a layer with the checksum of its points
         std::vector<Part> layers;
-        for (const Layer& layer : plane.layers)
+        for (const Layer& layer : plane.polylines)
             layers.emplace_back(layer, crc32_of(bytes_in(layer.points.span())));
-        std::vector<PointArray> all_hatches(plane.hatches.begin(), plane.hatches.end());
-        all_hatches.resize(layers.size());
         return [this, kept = std::make_shared<const std::vector<Part>>(std::move(layers)),
-                all_hatches = std::move(all_hatches)](const PlanePosition& place, Completions& after) {
+                all_hatches = plane.hatches](const PlanePosition& place, Completions& after) {
             planes_.push_back(place);
             for (std::size_t part = 0; part < kept->size(); ++part) {
                 const auto& [layer, crc] = (*kept)[part];

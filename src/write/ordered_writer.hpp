@@ -6,7 +6,6 @@
 
 #include "write/byte_buffer.hpp"
 #include "write/left_out.hpp"
-#include "write/plane_view.hpp"
 
 #include <cstdint>
 #include <functional>
@@ -27,11 +26,7 @@ struct PlanePosition {
 };
 
 /// Returns the values that the layers of a plane have in common.
-[[nodiscard]] PlanePosition plane_position(std::span<const Layer> parts);
-
-/// Throws Error{usage} for the first layer whose heights differ from those of the first part. The heights of
-/// the first part are written.
-void check_same_planes(std::span<const LayerStack> parts, const LayerFileInfo& info);
+[[nodiscard]] PlanePosition plane_position(const Plane& plane);
 
 /// The values that must ascend from plane to plane.
 enum class Ascending {
@@ -45,11 +40,9 @@ class PlaneOrder {
   public:
     explicit PlaneOrder(const LayerFileInfo& info, Ascending ascending = Ascending::z);
 
-    /// Throws Error{usage} if the number of layers is not that of parts, or, unless
-    /// LayerFileInfo::known_finite is set, if a coordinate or height is not finite.
-    void check_parts(std::span<const Layer> parts) const;
-    /// Performs these checks for scan vectors, and those of `check(const ScanVectors&)`.
-    void check_parts(const ScanVectors& vectors) const;
+    /// Throws Error{usage} if the plane has another number of parts, or, unless LayerFileInfo::known_finite
+    /// is set, as `check` does.
+    void check_parts(const Plane& plane) const;
     /// Sets the position of the plane. Throws Error{usage} if it does not follow the previous plane.
     void next(PlanePosition& plane);
     /// Throws Error{usage} if there were more or fewer planes than announced.
@@ -57,8 +50,6 @@ class PlaneOrder {
     [[nodiscard]] std::uint64_t count() const noexcept { return count_; }
 
   private:
-    void check_number(std::size_t parts) const;
-
     bool known_finite_;
     std::uint64_t before_; ///< number of planes of the file below this range
     std::uint64_t announced_;
@@ -71,8 +62,7 @@ class PlaneOrder {
 /// Base of writers that check the order of planes and report what they leave out.
 class OrderedWriter : public LayerWriter {
   public:
-    [[nodiscard]] Commit prepare(std::span<const Layer> parts) final;
-    [[nodiscard]] Commit prepare(const ScanVectors& vectors) final;
+    [[nodiscard]] Commit prepare(const Plane& plane) final;
     void finish() final;
     [[nodiscard]] Findings findings() const override { return left_out_.findings(); }
     [[nodiscard]] WriteLosses losses() const final { return left_out_.losses(); }
@@ -87,7 +77,7 @@ class OrderedWriter : public LayerWriter {
           left_out_(holds, names_parts(info) ? std::span(info.parts) : std::span<const PartInfo>()) {}
 
     /// Formats a plane. Called from any threads.
-    [[nodiscard]] virtual Write formatted(const PlaneView& plane) = 0;
+    [[nodiscard]] virtual Write formatted(const Plane& plane) = 0;
     /// Ends the file and gives it its name. Called once, after the last plane.
     virtual void end_file() = 0;
 
@@ -98,8 +88,6 @@ class OrderedWriter : public LayerWriter {
     [[nodiscard]] std::shared_ptr<ByteBuffer> buffer() { return buffers_->take(); }
 
   private:
-    [[nodiscard]] Commit prepare_view(const PlaneView& plane);
-
     /// Returns whether this writer warns about parts: among the ranges of a file, only the first one does.
     static bool names_parts(const LayerFileInfo& info) noexcept {
         return info.chunk == nullptr || info.chunk->before == 0;

@@ -226,14 +226,14 @@ class OvfWriter final : public OrderedWriter {
     std::uint64_t bytes() const noexcept override { return file_.bytes(); }
 
   private:
-    Write formatted(const PlaneView& plane) override {
+    Write formatted(const Plane& plane) override {
         auto blocks = std::make_shared<Blocks>(Blocks{buffer(), {}});
-        for (std::size_t part = 0; part < plane.layers.size(); ++part) {
-            const Layer& layer = plane.layers[part];
+        for (std::size_t part = 0; part < plane.polylines.size(); ++part) {
+            const Layer& layer = plane.polylines[part];
             BlockWriter writer(floats_, layer.index, *blocks);
             for (std::size_t i = 0; i < layer.contours(); ++i)
                 writer.put_contour(layer.contour(i), layer.closed(i), ends_of_blocks_[part]);
-            writer.put_hatches(plane.hatches_of(part), ends_of_blocks_[part]);
+            writer.put_hatches(plane.hatches[part].span(), ends_of_blocks_[part]);
         }
         return [this, blocks](const PlanePosition& offset, Completions& after) {
             if (offset.position == 0) {

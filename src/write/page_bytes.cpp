@@ -70,22 +70,22 @@ PageGrid page_grid(const Box3& box) {
     return grid;
 }
 
-NumberBytes layer_numbers(const PlaneView& plane, std::span<const PartInfo> parts,
-                          std::span<const Point2> places, const PageGrid& grid, std::uint64_t& shown) {
-    assert(parts.size() == plane.layers.size());
+NumberBytes layer_numbers(const Plane& plane, std::span<const PartInfo> parts, std::span<const Point2> places,
+                          const PageGrid& grid, std::uint64_t& shown) {
+    assert(parts.size() == plane.polylines.size());
     const WriterGrid snapping(grid.step_mm);
     NumberBytes out;
     shown = 0;
-    for (std::size_t i = 0; i < plane.layers.size(); ++i) {
-        const Layer& layer = plane.layers[i];
-        const std::span<const Point2> hatches = plane.hatches_of(i);
+    for (std::size_t i = 0; i < plane.polylines.size(); ++i) {
+        const Layer& layer = plane.polylines[i];
+        const std::span<const Point2> hatches = plane.hatches[i].span();
         shown += add_contours(layer, hatches.size() / 2, parts[i].exposure.has_value(), snapping, grid.origin,
                               out);
         add_way(grid.origin, snapping.snap_points(hatches, layer.index), out);
     }
     out.add(places.size());
-    add_way(grid.origin, snapping.snap_points(places, plane.layers.empty() ? 0 : plane.layers.front().index),
-            out);
+    add_way(grid.origin,
+            snapping.snap_points(places, plane.polylines.empty() ? 0 : plane.polylines.front().index), out);
     return out;
 }
 

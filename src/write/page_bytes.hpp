@@ -7,7 +7,6 @@
 #include "lamella/write/layer_writer.hpp"
 
 #include "write/grid.hpp"
-#include "write/plane_view.hpp"
 
 #include <cstdint>
 #include <span>
@@ -55,7 +54,7 @@ struct PageGrid {
 /// from point to point. Its first point is relative to that of the previous contour. `shown` receives the
 /// number of points of the contours. Scan vectors are kept even if points coincide, because a machine
 /// executes each line.
-[[nodiscard]] NumberBytes layer_numbers(const PlaneView& plane, std::span<const PartInfo> parts,
+[[nodiscard]] NumberBytes layer_numbers(const Plane& plane, std::span<const PartInfo> parts,
                                         std::span<const Point2> places, const PageGrid& grid,
                                         std::uint64_t& shown);
 

@@ -52,39 +52,39 @@ class RawWriter final : public SequentialWriter {
         return bytes_of(place.index) + bytes_of(place.z) + bytes_of(place.bottom) + bytes_of(place.top);
     }
 
-    void format(const PlaneView& plane, ByteBuffer& out) const override {
+    void format(const Plane& plane, ByteBuffer& out) const override {
         std::uint64_t contours = 0;
         std::uint64_t points = 0;
         std::uint64_t lines = 0;
-        for (std::size_t part = 0; part < plane.layers.size(); ++part) {
-            contours += plane.layers[part].contours();
-            points += plane.layers[part].points.size();
-            lines += plane.hatches_of(part).size() / 2;
+        for (std::size_t part = 0; part < plane.polylines.size(); ++part) {
+            contours += plane.polylines[part].contours();
+            points += plane.polylines[part].points.size();
+            lines += plane.hatches[part].span().size() / 2;
         }
         out.append(bytes_of(contours) + bytes_of(points) + bytes_of(lines));
-        for (const Layer& layer : plane.layers)
+        for (const Layer& layer : plane.polylines)
             append_values(layer.points.span(), out);
-        for (std::size_t part = 0; part < plane.layers.size(); ++part)
-            append_values(plane.hatches_of(part), out);
+        for (std::size_t part = 0; part < plane.polylines.size(); ++part)
+            append_values(plane.hatches[part].span(), out);
         put_ends(plane, out);
         pad(out);
     }
 
     /// The number of points up to the end of each contour, the part of each, the part of each hatch line, and
     /// whether each contour is a ring.
-    static void put_ends(const PlaneView& plane, ByteBuffer& out) {
+    static void put_ends(const Plane& plane, ByteBuffer& out) {
         std::vector<std::uint32_t> ends;
         std::vector<std::uint32_t> contour_parts;
         std::vector<std::uint32_t> line_parts;
         std::string closed;
         std::uint64_t before = 0;
-        for (std::size_t part = 0; part < plane.layers.size(); ++part) {
-            const Layer& layer = plane.layers[part];
+        for (std::size_t part = 0; part < plane.polylines.size(); ++part) {
+            const Layer& layer = plane.polylines[part];
             for (std::size_t i = 1; i < layer.offsets.size(); ++i)
                 ends.push_back(static_cast<std::uint32_t>(before + layer.offsets[i]));
             before += layer.points.size();
             contour_parts.resize(ends.size(), static_cast<std::uint32_t>(part));
-            line_parts.resize(line_parts.size() + plane.hatches_of(part).size() / 2,
+            line_parts.resize(line_parts.size() + plane.hatches[part].span().size() / 2,
                               static_cast<std::uint32_t>(part));
             closed.append(layer.rings, '\1').append(layer.open_chains(), '\0');
         }

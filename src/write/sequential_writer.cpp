@@ -9,8 +9,8 @@ namespace lamella {
 
 SequentialWriter::SequentialWriter(const std::string& path, const LayerFileInfo& info,
                                    std::string_view header, Holds holds)
-    : OrderedWriter(info, holds), compressed_(info.memory == nullptr && has_gzip_extension(path)), chunk_(info.chunk),
-      file_layers_(info.layers) {
+    : OrderedWriter(info, holds), compressed_(info.memory == nullptr && has_gzip_extension(path)),
+      chunk_(info.chunk), file_layers_(info.layers) {
     if (chunk_ == nullptr)
         file_.emplace(path, Overwriting::no, info.memory);
     if (chunk_ == nullptr || chunk_->before == 0)
@@ -37,7 +37,7 @@ void SequentialWriter::append_bytes(std::string_view bytes) {
     assert(none.empty());
 }
 
-OrderedWriter::Write SequentialWriter::formatted(const PlaneView& plane) {
+OrderedWriter::Write SequentialWriter::formatted(const Plane& plane) {
     const std::shared_ptr<ByteBuffer> text = buffer();
     format(plane, *text);
     std::shared_ptr<const void> owner = text;

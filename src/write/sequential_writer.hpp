@@ -28,12 +28,12 @@ class SequentialWriter : public OrderedWriter {
     /// Returns the text before the contours of a layer. Called in the order of layers.
     [[nodiscard]] virtual std::string layer_header(const PlanePosition& place) = 0;
     /// Appends the contours of a layer, part by part, and the text after them. Called from any threads.
-    virtual void format(const PlaneView& plane, ByteBuffer& out) const = 0;
+    virtual void format(const Plane& plane, ByteBuffer& out) const = 0;
     /// Returns the end of the file. Called once, after the last layer.
     [[nodiscard]] virtual std::string tail() { return {}; }
 
   private:
-    [[nodiscard]] Write formatted(const PlaneView& plane) final;
+    [[nodiscard]] Write formatted(const Plane& plane) final;
     void end_file() final;
     void append_bytes(std::string_view bytes, std::shared_ptr<const void> owner, Completions& after);
     void append_bytes(std::string_view bytes);

@@ -116,9 +116,9 @@ class Sl1Writer final : public OrderedWriter {
     std::uint64_t bytes() const noexcept override { return archive_.bytes(); }
 
   private:
-    Write formatted(const PlaneView& plane) override {
-        return [this, image = images_.image(plane.layers),
-                seen = relief_.spans(plane.layers)](const PlanePosition& offset, Completions& after) {
+    Write formatted(const Plane& plane) override {
+        return [this, image = images_.image(plane.polylines),
+                seen = relief_.spans(plane.polylines)](const PlanePosition& offset, Completions& after) {
             relief_.add(seen);
             count(offset, image.areas.covered * display_.pixel_mm2());
             add_loss(unseen_material(offset.z, image.areas, display_.pixel_mm2()));

@@ -63,15 +63,15 @@ class SlcWriter final : public SequentialWriter {
         return bytes;
     }
 
-    void format(const PlaneView& plane, ByteBuffer& out) const override {
+    void format(const Plane& plane, ByteBuffer& out) const override {
         std::size_t room = sizeof(std::uint32_t);
-        for (const Layer& layer : plane.layers)
+        for (const Layer& layer : plane.polylines)
             room +=
                 layer.rings * (boundary_header + float_point_size) + layer.points.size() * float_point_size;
         char* const begin = out.room(room);
         char* at = begin + sizeof(std::uint32_t);
         std::size_t boundaries = 0;
-        for (const Layer& layer : plane.layers) {
+        for (const Layer& layer : plane.polylines) {
             for (std::size_t i = 0; i < layer.rings; ++i) {
                 const FloatContour listed =
                     floats_.put(layer.contour(i), true, layer.index, at + boundary_header);
@@ -83,7 +83,7 @@ class SlcWriter final : public SequentialWriter {
                 ++boundaries;
             }
         }
-        put_count(begin, boundaries, plane.layers.front().index);
+        put_count(begin, boundaries, plane.polylines.front().index);
         out.end_at(at);
     }
 

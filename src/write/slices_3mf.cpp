@@ -110,10 +110,10 @@ class Slices3mfWriter final : public package_3mf::PackageWriter {
 
     static constexpr std::string_view stack_end = "</s:slicestack>\n";
 
-    Write formatted(const PlaneView& plane) override {
+    Write formatted(const Plane& plane) override {
         const std::shared_ptr<ByteBuffer> text = buffer();
         auto chunks = std::make_shared<std::vector<package_3mf::Chunk>>();
-        for (const Layer& layer : plane.layers) {
+        for (const Layer& layer : plane.polylines) {
             text->clear();
             put_slice(layer, grid_, *text);
             chunks->push_back(compressed(text->view()));

@@ -112,7 +112,7 @@ class Toolpath3mfWriter final : public package_3mf::PackageWriter {
     }
 
   private:
-    Write formatted(const PlaneView& plane) override {
+    Write formatted(const Plane& plane) override {
         const std::shared_ptr<ByteBuffer> text = buffer();
         put_layer(plane, *text);
         auto chunk = std::make_shared<package_3mf::Chunk>(compressed(text->view()));
@@ -156,11 +156,11 @@ class Toolpath3mfWriter final : public package_3mf::PackageWriter {
     }
 
     /// Writes the parts and profiles that a layer uses. Their numbers, from 1, are the same on all layers.
-    void put_header(const PlaneView& plane, ByteBuffer& out) const {
+    void put_header(const Plane& plane, ByteBuffer& out) const {
         std::set<std::size_t> of_parts;
         std::set<std::size_t> profiles;
-        for (std::size_t part = 0; part < plane.layers.size(); ++part)
-            if (plane.layers[part].contours() > 0 || !plane.hatches_of(part).empty()) {
+        for (std::size_t part = 0; part < plane.polylines.size(); ++part)
+            if (plane.polylines[part].contours() > 0 || !plane.hatches[part].span().empty()) {
                 of_parts.insert(keys_.keys[part].part);
                 profiles.insert(profile_of(part));
             }
@@ -173,12 +173,12 @@ class Toolpath3mfWriter final : public package_3mf::PackageWriter {
         out.append("</profiles>\n");
     }
 
-    void put_layer(const PlaneView& plane, ByteBuffer& out) const {
+    void put_layer(const Plane& plane, ByteBuffer& out) const {
         put_header(plane, out);
         out.append("<segments>\n");
         std::vector<GridPoint> scratch;
-        for (std::size_t part = 0; part < plane.layers.size(); ++part) {
-            const Layer& layer = plane.layers[part];
+        for (std::size_t part = 0; part < plane.polylines.size(); ++part) {
+            const Layer& layer = plane.polylines[part];
             const std::string refers = fmt::format("profileid=\"{}\" partid=\"{}\"", profile_of(part) + 1,
                                                    keys_.keys[part].part + 1);
             for (std::size_t i = 0; i < layer.contours(); ++i) {
@@ -189,7 +189,7 @@ class Toolpath3mfWriter final : public package_3mf::PackageWriter {
                     put_segment(closed ? "loop" : "polyline", refers, points, {"<point x=\"", "\" y=\""},
                                 layer, out);
             }
-            if (const auto lines = grid_.snap_lines(plane.hatches_of(part), layer.index); !lines.empty())
+            if (const auto lines = grid_.snap_lines(plane.hatches[part].span(), layer.index); !lines.empty())
                 put_segment("hatch", refers, lines, {"<hatch x1=\"", "\" y1=\"", "\" x2=\"", "\" y2=\""},
                             layer, out);
         }

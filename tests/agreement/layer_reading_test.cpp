@@ -1,5 +1,6 @@
 // Slice files are read alike by any number of threads: the same layers, warnings and errors.
 
+#include "fixtures/layers.hpp"
 #include "fixtures/random.hpp"
 #include "temporary_folder.hpp"
 
@@ -77,7 +78,7 @@ class LayerReading : public testing::TestWithParam<std::string_view> {
                                  .parts = {{.label = "wheels", .box = part_box(layers)}},
                                  .rule = PlaneRule::section_above};
         const std::string path = folder.file("layers");
-        write_layers(path, layer_format(format, ""), layers, info);
+        write_layers(path, layer_format(format, ""), test::planes_of(layers), info);
         return bytes_of(path);
     }
 };
@@ -126,7 +127,7 @@ TEST_P(LayerReading, GivesTheSameLayersIfTheyAreNotInMemory) {
         for (std::size_t i = 0; i < file.planes.size(); ++i) {
             EXPECT_EQ(file.contents[i].points, held.contents[i].points);
             EXPECT_EQ(file.contents[i].hatch_lines, held.contents[i].hatch_lines);
-            const ScanVectors planes[2] = {file.plane(i), held.plane(i)};
+            const Plane planes[2] = {file.plane(i), held.plane(i)};
             ASSERT_EQ(content_hash(planes[0]), content_hash(planes[1])) << i;
             for (std::size_t k = 0; k < file.parts.size(); ++k) {
                 const Layer& layer = planes[0].polylines[k];

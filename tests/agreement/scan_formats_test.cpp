@@ -145,10 +145,10 @@ Job scanned() {
             const std::vector<ScanLayer> below(layers.rend() - static_cast<std::ptrdiff_t>(i), layers.rend());
             const std::vector<ScanLayer> above(layers.begin() + static_cast<std::ptrdiff_t>(i) + 1,
                                                layers.end());
-            ScanVectors vectors = (part.support ? scan_support(layers[i], strategy())
-                                                : scan(layers[i], below, above, strategy()))
-                                      .vectors;
-            for (std::size_t k = 0; k < vectors.exposures(); ++k) {
+            Plane vectors = (part.support ? scan_support(layers[i], strategy())
+                                          : scan(layers[i], below, above, strategy()))
+                                .vectors;
+            for (std::size_t k = 0; k < vectors.parts(); ++k) {
                 job.parts[first + k].layers.push_back(std::move(vectors.polylines[k]));
                 job.parts[first + k].hatches.push_back(std::move(vectors.hatches[k]));
             }
@@ -164,7 +164,7 @@ Job scanned() {
 std::string written(const char* format, const Job& job, std::vector<std::string>* warnings = nullptr) {
     const TemporaryFolder folder;
     const PlaneSource source = source_of(job.parts);
-    std::vector<ScanVectors> planes;
+    std::vector<Plane> planes;
     for (std::size_t i = 0; i < job.info.layers; ++i)
         planes.push_back(source.plane(i));
     std::vector<std::string> said =

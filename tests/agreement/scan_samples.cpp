@@ -24,7 +24,7 @@ void write_samples(const std::string& folder) {
     strategy.hatch.distance = 0.6;
     strategy.upskin.layers = 1;
     strategy.downskin.layers = 1;
-    std::vector<ScanVectors> planes;
+    std::vector<Plane> planes;
     LayerFileInfo info{.box = box, .layers = layers.size(), .bottom = layers.front().bottom};
     info.parts.clear();
     for (const Exposure& exposure : exposures(strategy, "rook"))

@@ -139,7 +139,7 @@ std::string written(const char* format, const std::vector<LayerPart>& parts,
     LayerWriteOptions options;
     options.page.viewer = "<!--lamella-data-->";
     const PlaneSource source = source_of(parts);
-    std::vector<ScanVectors> planes;
+    std::vector<Plane> planes;
     for (std::size_t i = 0; i < info.layers; ++i)
         planes.push_back(source.plane(i));
     std::vector<std::string> told =
@@ -256,7 +256,7 @@ TEST(SliceFormats, SayWhatTheyLeaveOut) {
 // Everything that a reader returns, or its error.
 struct Outcome {
     LayerFile file;
-    std::vector<ScanVectors> planes;
+    std::vector<Plane> planes;
     std::string error;
 };
 
@@ -350,7 +350,7 @@ class CountedPlanes {
         file.make = [this, make = std::move(file.make), fail_at](std::size_t position) {
             if (position == fail_at)
                 throw Error(ErrorKind::input, "no such plane");
-            ScanVectors plane = make(position);
+            Plane plane = make(position);
             note(plane);
             return plane;
         };
@@ -359,7 +359,7 @@ class CountedPlanes {
     std::size_t most() const { return most_; }
 
   private:
-    void note(const ScanVectors& plane) {
+    void note(const Plane& plane) {
         const std::lock_guard lock(mutex_);
         std::erase_if(alive_, [](const std::weak_ptr<const void>& owner) { return owner.expired(); });
         for (const Layer& layer : plane.polylines)
@@ -389,8 +389,8 @@ TEST(SliceFormats, KeepFewPlanesInMemoryWhileTheyAreWritten) {
         const LayerFile file = without_layers(planes, no_plane);
         const auto writer =
             open_layer_writer(folder.file("out"), layer_format(format, ""), info_of(file), {});
-        write_planes(*writer, file.planes.size(), [&](std::size_t i) { return file.plane(i); },
-                     {.threads = 3});
+        file.run(Stage::write, [&](std::size_t, const Plane& plane) { return writer->prepare(plane); },
+                 {.threads = 3});
         writer->finish();
         EXPECT_LE(planes.most(), 9U) << format;
     }

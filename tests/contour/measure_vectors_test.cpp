@@ -48,44 +48,47 @@ TEST(MeasureVectors, CountsNoTimeForSpeedsThatNobodyReported) {
     EXPECT_DOUBLE_EQ(figures.marked_mm, 80);
 }
 
-ScanVectors two_exposures() {
-    ScanVectors vectors;
+Plane two_exposures() {
+    Plane vectors;
     vectors.add(test::layer_of({rectangle(0, 0, 10, 10)}), {});
     vectors.add(test::layer_of({}), PointArray({{1, 1}, {9, 1}, {9, 2}, {1, 2}}));
     return vectors;
 }
 
-TEST(ScanVectors, HaveAHashThatDependsOnTheirOrder) {
+TEST(Plane, HaveAHashThatDependsOnTheirOrder) {
     const std::uint64_t hash = content_hash(two_exposures());
     EXPECT_EQ(content_hash(two_exposures()), hash);
-    ScanVectors higher = two_exposures();
+    Plane higher = two_exposures();
     higher.polylines[0].z = 5;
     EXPECT_EQ(content_hash(higher), hash);
-    ScanVectors swapped = two_exposures();
+    Plane swapped = two_exposures();
     std::swap(swapped.polylines[0], swapped.polylines[1]);
     std::swap(swapped.hatches[0], swapped.hatches[1]);
     EXPECT_NE(content_hash(swapped), hash);
-    ScanVectors backwards = two_exposures();
+    Plane backwards = two_exposures();
     backwards.hatches[1] = PointArray({{9, 2}, {1, 2}, {1, 1}, {9, 1}});
     EXPECT_NE(content_hash(backwards), hash);
-    ScanVectors both;
+    Plane both;
     both.append(two_exposures());
     EXPECT_EQ(content_hash(both), hash);
     both.append(two_exposures());
-    EXPECT_EQ(both.exposures(), 4U);
+    EXPECT_EQ(both.parts(), 4U);
     EXPECT_NE(content_hash(both), hash);
 }
 
-TEST(ScanVectors, AreCheckedWithTheirHatchLines) {
+TEST(Plane, AreCheckedWithTheirHatchLines) {
     check(two_exposures());
-    ScanVectors without = two_exposures();
+    Plane apart = two_exposures();
+    apart.polylines[1].top += 1;
+    test::expect_error(ErrorKind::usage, {"part 2 of a plane"}, [&] { check(apart); });
+    Plane without = two_exposures();
     without.hatches.pop_back();
-    test::expect_error(ErrorKind::usage, {"polylines of 2 exposures and hatch lines of 1"},
+    test::expect_error(ErrorKind::usage, {"polylines of 2 parts and hatch lines of 1"},
                        [&] { check(without); });
-    ScanVectors odd = two_exposures();
+    Plane odd = two_exposures();
     odd.hatches[0] = PointArray({{1, 1}, {2, 2}, {3, 3}});
     test::expect_error(ErrorKind::usage, {"3 points of hatch lines"}, [&] { check(odd); });
-    ScanVectors endless = two_exposures();
+    Plane endless = two_exposures();
     endless.hatches[1] = PointArray({{1, 1}, {HUGE_VAL, 2}});
     test::expect_error(ErrorKind::usage, {"its hatches: found inf"}, [&] { check(endless); });
 }

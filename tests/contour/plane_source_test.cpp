@@ -97,8 +97,8 @@ TEST(PlaneSource, OfLayersGivesThemBack) {
             ASSERT_EQ(source.planes.size(), planes);
             ASSERT_EQ(source.contents.size(), planes);
             for (std::size_t i = 0; i < planes; ++i) {
-                const ScanVectors plane = source.plane(i);
-                ASSERT_EQ(plane.exposures(), parts.size());
+                const Plane plane = source.plane(i);
+                ASSERT_EQ(plane.parts(), parts.size());
                 for (std::size_t part = 0; part < parts.size(); ++part) {
                     expect_same_layer(plane.polylines[part], parts[part].layers[i]);
                     EXPECT_TRUE(same_points(plane.hatches[part].span(), parts[part].hatches_of(i)));
@@ -213,8 +213,8 @@ TEST(PlaneSource, HasSomePartsOfAnother) {
         EXPECT_EQ(some.parts[position].box, source.parts[part].box);
         EXPECT_EQ(some.parts[position].hatch_lines, source.parts[part].hatch_lines);
         for (std::size_t i = 0; i < 6; ++i) {
-            const ScanVectors plane = some.plane(i);
-            ASSERT_EQ(plane.exposures(), 2U);
+            const Plane plane = some.plane(i);
+            ASSERT_EQ(plane.parts(), 2U);
             expect_same_layer(plane.polylines[position], parts[part].layers[i]);
             EXPECT_TRUE(same_points(plane.hatches[position].span(), parts[part].hatches_of(i)));
         }
@@ -222,7 +222,7 @@ TEST(PlaneSource, HasSomePartsOfAnother) {
     EXPECT_EQ(some.hatch_lines(), source.parts[1].hatch_lines);
     const PlaneSource none = with_parts(source, {});
     EXPECT_TRUE(none.parts.empty());
-    EXPECT_EQ(none.plane(0).exposures(), 0U);
+    EXPECT_EQ(none.plane(0).parts(), 0U);
 }
 
 TEST(PlaneSource, MakesPlanesWhenTheyAreNeeded) {
@@ -235,12 +235,12 @@ TEST(PlaneSource, MakesPlanesWhenTheyAreNeeded) {
     source.make = [&](std::size_t position) {
         ++made;
         const auto x = static_cast<double>(position);
-        ScanVectors plane;
+        Plane plane;
         plane.add(normal_layer({rectangle(x, 0, x + 1, 1)}), PointArray({{x, 0}, {x, 1}}));
         plane.add({}, {});
         return plane;
     };
-    const ScanVectors plane = source.plane(7);
+    const Plane plane = source.plane(7);
     EXPECT_EQ(made, 1);
     for (const Layer& layer : plane.polylines) {
         EXPECT_EQ(layer.index, 7U) << "the heights are those of the source";
@@ -279,20 +279,20 @@ TEST(PlaneSource, PassesEachPlaneOnce) {
     const PlaneSource source = source_of(parts);
     for (const unsigned threads : test::thread_counts()) {
         std::vector<std::atomic<int>> seen(count);
-        const auto look_at = [&](std::size_t position, const ScanVectors& plane) {
+        const auto look_at = [&](std::size_t position, const Plane& plane) {
             ++seen[position];
             EXPECT_EQ(plane.polylines.at(0).index, position);
             EXPECT_EQ(plane.polylines.at(0).contour(0)[0].x, static_cast<double>(position));
         };
         source.visit(Stage::polygon,
-                     [&](std::size_t position, const ScanVectors& plane, unsigned worker) {
+                     [&](std::size_t position, const Plane& plane, unsigned worker) {
                          EXPECT_LT(worker, threads);
                          look_at(position, plane);
                      },
                      {.threads = threads});
         std::vector<std::size_t> committed;
         source.run(Stage::polygon,
-                   [&](std::size_t position, const ScanVectors& plane) {
+                   [&](std::size_t position, const Plane& plane) {
                        look_at(position, plane);
                        return Commit([&, position] { committed.push_back(position); });
                    },
@@ -324,11 +324,36 @@ TEST(PlaneSource, OfStacksHasPartsWithoutLabels) {
     expect_same_layer(source.plane(1).polylines.at(1), parts[1].layers[1]);
 }
 
+TEST(PlaneSource, OfPlanesIsThatOfTheirParts) {
+    const PlaneSource expected = source_of(two_parts(), "job");
+    const std::vector<Plane> planes{expected.plane(0), expected.plane(1)};
+    std::vector<PartInfo> parts;
+    for (const PartInfo& part : expected.parts)
+        parts.push_back({.label = part.label, .box = {}, .exposure = part.exposure, .support = part.support});
+    const PlaneSource source = source_of(planes, parts, "job");
+    EXPECT_EQ(source.hatch_lines(), expected.hatch_lines());
+    EXPECT_EQ(source.largest_coordinate, expected.largest_coordinate);
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        EXPECT_EQ(source.parts[i].label, expected.parts[i].label);
+        EXPECT_EQ(source.parts[i].box.max.x, expected.parts[i].box.max.x);
+        EXPECT_EQ(source.parts[i].box.max.z, expected.parts[i].box.max.z);
+    }
+    for (std::size_t i = 0; i < planes.size(); ++i) {
+        EXPECT_EQ(content_hash(source.plane(i)), content_hash(planes[i]));
+        EXPECT_EQ(source.planes[i].top, expected.planes[i].top);
+    }
+    parts.pop_back();
+    test::expect_error(ErrorKind::usage, {"job: a plane has 2 parts, and there are 1"},
+                       [&] { static_cast<void>(source_of(planes, parts, "job")); });
+    test::expect_error(ErrorKind::usage, {"a plane has 0 parts"},
+                       [] { static_cast<void>(source_of(std::vector<Plane>(1), {})); });
+}
+
 TEST(PlaneSource, KeepsPlanesInsteadOfMakingThem) {
     PlaneSource source = source_of(two_parts());
     source.plane_bytes = 7;
     source.spare_bytes = 9;
-    std::vector<ScanVectors> planes{source.plane(0), source.plane(1)};
+    std::vector<Plane> planes{source.plane(0), source.plane(1)};
     planes[1].polylines[0] = normal_layer({rectangle(0, 0, 9, 9)});
     source.make = {};
     keep_planes(source, std::move(planes));

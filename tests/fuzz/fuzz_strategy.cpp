@@ -62,7 +62,7 @@ void scan_and_check(const ScanStrategy& strategy) {
     try {
         for (const ScannedLayer& scanned :
              {scan(layer, beside, beside, strategy), scan_support(layer, strategy)})
-            for (std::size_t i = 0; i < scanned.vectors.exposures(); ++i)
+            for (std::size_t i = 0; i < scanned.vectors.parts(); ++i)
                 fuzz::require_whole(scanned.vectors.polylines[i], scanned.vectors.hatches[i].span());
     } catch (const Error& error) {
         require(error.kind() == ErrorKind::limit);

@@ -1,3 +1,4 @@
+#include "fixtures/layers.hpp"
 #include "pipeline/job_output.hpp"
 #include "temporary_folder.hpp"
 #include "write/sample_layers.hpp"
@@ -14,13 +15,13 @@ TEST(JobOutput, HasTheBytesOfItsWriter) {
     const LayerStack layers = square_with_hole();
     const TemporaryFolder folder;
     const OutputFiles files{.path = folder.file("out"), .format = &layer_format("cli", "")};
-    write_layers(files.path, *files.format, layers, info_of(layers), files.write);
+    write_layers(files.path, *files.format, test::planes_of(layers), info_of(layers), files.write);
     const std::string expected = file_bytes(files.path);
     write_file(files.path, "old");
     JobOutput output(files, info_of(layers));
     EXPECT_FALSE(output.has_page());
     for (const Layer& layer : layers)
-        output.prepare({&layer, 1})();
+        output.prepare(layer)();
     EXPECT_EQ(file_bytes(files.path), "old") << "no name before all of it is written";
     FileResult written;
     output.finish_file(written);
@@ -32,7 +33,7 @@ TEST(JobOutput, HasTheBytesOfItsWriter) {
 TEST(JobOutput, OfNothingWritesNothing) {
     const LayerStack layers = square_with_hole();
     JobOutput output({}, info_of(layers));
-    EXPECT_FALSE(output.prepare(layers)) << "there is nothing to do";
+    EXPECT_FALSE(output.prepare(layers.front())) << "there is nothing to do";
     FileResult written;
     output.finish_file(written);
     EXPECT_EQ(written.format, "");

@@ -60,8 +60,8 @@ void expect_same(const SteppedFile& found, const SteppedFile& expected) {
     for (std::size_t i = 0; i < found.planes.size(); ++i) {
         EXPECT_EQ(found.planes[i].changed_layers, expected.planes[i].changed_layers);
         EXPECT_EQ(found.planes[i].area_after_mm2, expected.planes[i].area_after_mm2);
-        const ScanVectors plane = found.file.plane(i);
-        const ScanVectors other = expected.file.plane(i);
+        const Plane plane = found.file.plane(i);
+        const Plane other = expected.file.plane(i);
         EXPECT_EQ(content_hash(plane), content_hash(other)) << i;
         EXPECT_EQ(std::tie(plane.polylines[0].z, plane.polylines[1].top),
                   std::tie(other.polylines[0].z, other.polylines[1].top));

@@ -99,7 +99,7 @@ Written process(const LayerJob& job, const Planes& planes, std::optional<Ranges>
         std::swap(order[i - 1], order[random.bits() % i]);
     std::vector<Commit> commits(planes.size());
     for (const std::uint32_t plane : order)
-        commits[plane] = processor.prepare(plane, planes[plane]);
+        commits[plane] = processor.prepare(plane, Plane(planes[plane]));
     for (std::uint32_t plane = sliced.begin; plane < sliced.end; ++plane)
         if (commits[plane])
             commits[plane]();

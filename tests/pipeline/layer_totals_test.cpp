@@ -100,7 +100,7 @@ TEST(LayerTotals, SayWhereLayersAreOpenAndWhatWasClosed) {
 }
 
 /// What was made of one plane.
-struct Plane {
+struct RandomPlane {
     std::vector<Layer> parts;
     std::vector<InvertedRings> inverted;
     std::vector<GapJoin> joins;
@@ -126,10 +126,10 @@ Layer random_layer(test::Random& random, const PlannedLayer& plane) {
     return builder.finish(plane.index, plane.z, plane.bottom, plane.top);
 }
 
-std::vector<Plane> random_planes(test::Random& random, const Plan& plan, std::size_t parts) {
-    std::vector<Plane> planes;
+std::vector<RandomPlane> random_planes(test::Random& random, const Plan& plan, std::size_t parts) {
+    std::vector<RandomPlane> planes;
     for (const PlannedLayer& planned : plan.layers) {
-        Plane& plane = planes.emplace_back();
+        RandomPlane& plane = planes.emplace_back();
         for (std::size_t part = 0; part < parts; ++part)
             plane.parts.push_back(random_layer(random, planned));
         for (const Layer& layer : plane.parts)
@@ -145,14 +145,14 @@ std::vector<Plane> random_planes(test::Random& random, const Plan& plan, std::si
 }
 
 /// From several threads, which take the planes as they come.
-void add_all(LayerTotals& totals, std::span<const Plane> planes, unsigned threads) {
+void add_all(LayerTotals& totals, std::span<const RandomPlane> planes, unsigned threads) {
     std::atomic<std::size_t> next{0};
     std::vector<std::thread> team;
     for (unsigned t = 0; t < threads; ++t)
         team.emplace_back([&] {
             for (std::size_t i; (i = next++) < planes.size();) {
                 const std::size_t number = planes.size() - 1 - i;
-                const Plane& plane = planes[number];
+                const RandomPlane& plane = planes[number];
                 totals.add(number, plane.parts, plane.joins, plane.changes, plane.inverted);
             }
         });
@@ -174,7 +174,7 @@ TEST(LayerTotals, AreTheSameBitsForAnyThreadsSharesAndProcesses) {
         // Not from the first layer on, as those of a shard.
         const Plan plan =
             plan_uniform(0, 9, {.layer_height = 0.3}, SliceAt::middle, {.index_range = {{7, 29}}});
-        const std::vector<Plane> planes = random_planes(random, plan, parts);
+        const std::vector<RandomPlane> planes = random_planes(random, plan, parts);
         job.supports.resize(parts);
         for (std::size_t part = 0; part < parts; ++part) // some files have several parts
             job.files.push_back(part == 0 ? 0

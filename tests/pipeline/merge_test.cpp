@@ -39,7 +39,7 @@ class Merge : public testing::Test {
         Box3 box;
         for (const PartInfo& part : parts)
             box.add(part.box);
-        write_layers(path(name), layer_format(format, name), stacks,
+        write_layers(path(name), layer_format(format, name), test::planes_of(stacks),
                      {.box = box, .layers = 1, .bottom = bottom, .parts = std::move(parts)});
     }
 

@@ -48,8 +48,8 @@ struct Delivered {
 Delivered deliver(const Plate& plate, const Plan& plan, std::uint64_t points_in_flight,
                   const Execution& execution = {.threads = 3}, const Engine& engine = engines().front()) {
     Delivered delivered;
-    const PlateSink sink{.prepare = [&](std::span<const Layer> parts) {
-        return [&delivered, kept = std::vector<Layer>(parts.begin(), parts.end())] {
+    const PlateSink sink{.prepare = [&](const Plane& bodies) {
+        return [&delivered, kept = bodies.polylines] {
             delivered.written.push_back(kept);
         };
     }};
@@ -100,9 +100,9 @@ TEST(PlateSlicing, MakesASourceOfTheSamePlanes) {
     const Plan plan = plan_of(plate, 0.3);
     const auto expect_same = [&] {
         const PlaneSource source = planes_of(plate, plan);
-        const PlateSink compare{.prepare = [&](std::span<const Layer> bodies) {
-            const std::vector<Layer> expected = material_of(bodies, plate.negatives).parts;
-            const std::vector<Layer> found = source.plane(bodies.front().index).polylines;
+        const PlateSink compare{.prepare = [&](const Plane& bodies) {
+            const std::vector<Layer> expected = material_of(bodies.polylines, plate.negatives).parts;
+            const std::vector<Layer> found = source.plane(bodies.polylines.front().index).polylines;
             EXPECT_EQ(found.size(), expected.size());
             for (std::size_t part = 0; part < expected.size(); ++part)
                 EXPECT_TRUE(same_contours(found.at(part), expected[part])) << part;
@@ -230,7 +230,7 @@ TEST(PlateSlicing, IsNotAtTheEndOfItsProgressWhileManyCopiesAreMadeOfAFewLayers)
                              now = progress;
                          }};
     double first = 1;
-    const PlateSink sink{.prepare = [&](std::span<const Layer>) -> Commit {
+    const PlateSink sink{.prepare = [&](const Plane&) -> Commit {
         if (now.stage == Stage::slice && now.total > 0)
             first = std::min(first, static_cast<double>(now.done) / static_cast<double>(now.total));
         return {};
@@ -279,11 +279,11 @@ TEST(PlateSlicing, HandsAFewPlanesAtATimeToASinkThatMakesMuchOfThem) {
     std::atomic<std::int64_t> on_their_way{0};
     std::atomic<std::int64_t> most{0};
     std::vector<std::uint64_t> written;
-    const PlateSink sink{.prepare = [&](std::span<const Layer> parts) -> Commit {
+    const PlateSink sink{.prepare = [&](const Plane& bodies) -> Commit {
         const std::int64_t now = ++on_their_way;
         for (std::int64_t before = most; before < now && !most.compare_exchange_weak(before, now);) {
         }
-        return [&, index = parts.front().index] {
+        return [&, index = bodies.polylines.front().index] {
             --on_their_way;
             written.push_back(index);
         };
@@ -313,8 +313,8 @@ TEST(PlateSlicing, PassesOnTheLayersOfEachBodyForAnyThreads) {
     const Plan plan = plan_of(plate, 0.3);
     for (const unsigned threads : {1U, 2U, 7U}) {
         Delivered delivered;
-        const PlateSink sink{.prepare = [&](std::span<const Layer> bodies) -> Commit {
-            return [&delivered, kept = std::vector<Layer>(bodies.begin(), bodies.end())] {
+        const PlateSink sink{.prepare = [&](const Plane& bodies) -> Commit {
+            return [&delivered, kept = bodies.polylines] {
                 delivered.written.push_back(kept);
             };
         }};
@@ -401,8 +401,8 @@ TEST(PlateSlicing, StopsWithWhatTheSinkThrows) {
     const Plan plan = plan_of(plate, 0.1);
     std::size_t written = 0;
     const auto slice_until = [&](bool in_order) {
-        const PlateSink sink{.prepare = [&, in_order](std::span<const Layer> parts) -> Commit {
-            const bool now = parts.front().index == 20;
+        const PlateSink sink{.prepare = [&, in_order](const Plane& bodies) -> Commit {
+            const bool now = bodies.polylines.front().index == 20;
             if (now && !in_order)
                 throw Error(ErrorKind::output, "no room");
             return [&written, now] {

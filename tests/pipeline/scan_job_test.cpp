@@ -116,7 +116,7 @@ TEST_F(ScanJob, WritesWhatScanMakesOfEachLayerAndItsNeighbours) {
             below.emplace_back(layers[i - k]);
         for (std::size_t k = 1; k <= 2 && i + k < layers.size(); ++k)
             above.emplace_back(layers[i + k]);
-        const ScanVectors vectors = scan(layers[i], below, above, *scanned.scan).vectors;
+        const Plane vectors = scan(layers[i], below, above, *scanned.scan).vectors;
         std::optional<Point2> beam;
         for (std::size_t e = 0; e < each.size(); ++e) {
             SCOPED_TRACE(testing::Message() << "layer " << i << ", " << each[e].name());
@@ -317,8 +317,8 @@ TEST_F(ScanJob, ExposesSupportsByTheirRules) {
     const LayerStack foot = slice(make_box(3, 4, 2).transformed(translation(10, 0, -5)),
                                   plan_uniform(result.box.min.z, result.box.max.z, {.layer_height = 0.5}));
     for (std::size_t i = 0; i < foot.size(); ++i) {
-        const ScanVectors vectors = scan_support(foot[i], *scanned.scan).vectors;
-        for (std::size_t e = 0; e < vectors.exposures(); ++e) {
+        const Plane vectors = scan_support(foot[i], *scanned.scan).vectors;
+        for (std::size_t e = 0; e < vectors.parts(); ++e) {
             const Layer& read = written[of_parts.size() + e].layers[i];
             const std::span<const Point2> hatches = written[of_parts.size() + e].hatches_of(i);
             EXPECT_TRUE(same_points(hatches, vectors.hatches[e].span()));
@@ -391,6 +391,23 @@ TEST_F(ScanJob, OfLayersThatAreThereHasTheBytesOfSlicing) {
         const FileResult result = scan_layers(path("scanned.cli"), layer_format("cli", ""), layers,
                                               *scanned.scan, {}, {.threads = threads});
         EXPECT_EQ(content("scanned.cli"), expected);
+        const ScannedLayers kept = scan_layers(layers, *scanned.scan, {.threads = threads});
+        const LayerFileInfo exposed = with_exposures(info_of(layers), *scanned.scan);
+        ASSERT_EQ(kept.vectors.parts.size(), exposed.parts.size());
+        ASSERT_EQ(kept.vectors.planes.size(), layers.planes.size());
+        for (std::size_t e = 0; e < exposed.parts.size(); ++e)
+            EXPECT_EQ(kept.vectors.parts[e].label, exposed.parts[e].label);
+        for (std::size_t e = 0; e < result.exposures.size(); ++e)
+            EXPECT_EQ(kept.figures.exposures[e].figures.vectors, result.exposures[e].figures.vectors);
+        std::uint64_t lines = 0;
+        for (std::size_t i = 0; i < layers.planes.size(); ++i) {
+            const Plane plane = kept.vectors.plane(i);
+            EXPECT_EQ(content_hash(plane), kept.figures.layers[i].scan_hash);
+            EXPECT_EQ(plane.polylines.front().z, layers.planes[i].z);
+            lines += kept.vectors.contents[i].hatch_lines;
+        }
+        EXPECT_GT(lines, 0U);
+        EXPECT_EQ(kept.vectors.hatch_lines(), lines);
         EXPECT_EQ(result.bytes, sliced.bytes);
         ASSERT_EQ(result.layers.size(), sliced.layers.size());
         for (std::size_t e = 0; e < result.exposures.size(); ++e) {

@@ -1,3 +1,4 @@
+#include "fixtures/layers.hpp"
 #include "pipeline/shared_writer.hpp"
 #include "temporary_folder.hpp"
 #include "thread_processes.hpp"
@@ -31,7 +32,7 @@ TEST(SharedWriter, WritesTheBytesOfOneWriterForAnyNumberOfProcesses) {
         const TemporaryFolder folder;
         const OutputFiles files{.path = folder.file("out"), .format = &format, .write = options_for_any()};
         const std::vector<std::string> warnings =
-            write_layers(files.path, format, layers, info_of(layers), files.write);
+            write_layers(files.path, format, test::planes_of(layers), info_of(layers), files.write);
         const std::string expected = file_bytes(files.path);
         for (const std::size_t processes : {1U, 2U, 5U, 40U})
             for (const std::uint64_t in_memory : {std::uint64_t{0}, std::uint64_t{1} << 20}) {
@@ -41,7 +42,7 @@ TEST(SharedWriter, WritesTheBytesOfOneWriterForAnyNumberOfProcesses) {
                     const PlaneRange mine = range_of(layers.size(), own);
                     SharedWriter writer(files, info_of(layers), mine, agreement, in_memory);
                     for (std::uint32_t i = mine.begin; i < mine.end; ++i)
-                        writer.prepare(std::span(&layers[i], 1))();
+                        writer.prepare(layers[i])();
                     EXPECT_EQ(file_bytes(files.path), "old") << "no name before all of it is written";
                     writer.finish();
                     EXPECT_EQ(writer.bytes(), expected.size()) << format.name;

@@ -45,7 +45,7 @@ inline std::vector<LayerPart> scanned(const LayerStack& layers, const ScanStrate
         std::vector<ScanLayer> below(layers.begin(), layers.begin() + static_cast<std::ptrdiff_t>(i));
         std::reverse(below.begin(), below.end());
         const std::vector<ScanLayer> above(layers.begin() + static_cast<std::ptrdiff_t>(i) + 1, layers.end());
-        ScanVectors vectors = scan(layers[i], below, above, strategy).vectors;
+        Plane vectors = scan(layers[i], below, above, strategy).vectors;
         for (std::size_t k = 0; k < parts.size(); ++k) {
             parts[k].layers.push_back(std::move(vectors.polylines[k]));
             parts[k].hatches.push_back(std::move(vectors.hatches[k]));

@@ -42,7 +42,7 @@ TEST_F(VerifyVectors, FindsTheSameIfLayersAreNotInMemory) {
     change_hatches("core hatch", 5, [](std::vector<Point2>& points) { points[0].x += 100; });
     for (const bool numbered : {true, false}) {
         LayerFileInfo info{.layers = plan_.layers.size(), .parts = {}};
-        std::vector<ScanVectors> planes(plan_.layers.size());
+        std::vector<Plane> planes(plan_.layers.size());
         for (LayerPart& part : parts_) {
             if (!numbered)
                 part.exposure->contour = 0;

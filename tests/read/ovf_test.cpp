@@ -68,7 +68,7 @@ TEST(ReadOvf, ABrokenListOfPositionsHasItsPlace) {
                                           file.size() - 1));
 }
 
-struct Plane {
+struct PlaneMessage {
     double z;
     std::vector<ProtobufMessage> blocks;
     std::int64_t repeats = 0;
@@ -79,12 +79,12 @@ struct Plane {
 };
 
 /// A job with the parameters 1, 2 and 3 and these parts, which announces so many planes.
-std::string job_of(const std::vector<Plane>& planes, const std::vector<std::string>& parts = {"AA1"},
+std::string job_of(const std::vector<PlaneMessage>& planes, const std::vector<std::string>& parts = {"AA1"},
                    std::int64_t announced = 0, double speed = 800) {
     std::string file(ovf::magic);
     file.append(8, '\0');
     std::vector<std::uint64_t> locations;
-    for (const Plane& plane : planes) {
+    for (const PlaneMessage& plane : planes) {
         locations.push_back(file.size());
         file.append(8, '\0');
         std::vector<std::uint64_t> blocks(plane.blocks.size());
@@ -167,7 +167,7 @@ TEST(ReadOvf, SaysWhichLayersLoseTheOrderOfExecution) {
 
 TEST(ReadOvf, ABlockIsExecutedOnce) {
     const std::vector<std::string> parts{std::string(500, 'x')}; // so that there are bytes to spare
-    Plane plane{1, {block(ovf::block::hatches, 1)}};
+    PlaneMessage plane{1, {block(ovf::block::hatches, 1)}};
     EXPECT_EQ(read(job_of({plane}, parts)).parts.size(), 1U);
     plane.named = 2;
     EXPECT_NE(error_of(job_of({plane}, parts)).find("found a second table, header or block"),
@@ -220,8 +220,8 @@ TEST(ReadOvf, SaysWhatItLeavesOutOfTheExecution) {
 
 TEST(ReadOvf, SaysWherePlanesAndBlocksLack) {
     const ProtobufMessage hatch = block(ovf::block::hatches, 1);
-    const Plane first{.z = 1, .blocks = {hatch}, .announced = 1};
-    Plane second{.z = 2, .blocks = {hatch, hatch}, .announced = 2, .number = 1};
+    const PlaneMessage first{.z = 1, .blocks = {hatch}, .announced = 1};
+    PlaneMessage second{.z = 2, .blocks = {hatch, hatch}, .announced = 2, .number = 1};
     EXPECT_TRUE(read(job_of({first, second}, {"AA1"}, 2)).warnings.empty());
     EXPECT_EQ(read(job_of({first, second}, {"AA1"}, 3)).warnings,
               std::vector<std::string>{"the job announces 3 work planes; the file has 2"});

@@ -7,6 +7,7 @@
 
 #include "container/zip_writer.hpp"
 #include "fixtures/expect_error.hpp"
+#include "fixtures/layers.hpp"
 #include "temporary_folder.hpp"
 
 #include <gtest/gtest.h>
@@ -174,7 +175,7 @@ TEST(ReadSlices3mf, MarksOfSupportsAreKept) {
         stacks.push_back(part.layers);
         info.parts.push_back({.label = part.label, .support = part.support});
     }
-    write_layers(folder.file("b.3mf"), layer_format("3mf", ""), stacks, info);
+    write_layers(folder.file("b.3mf"), layer_format("3mf", ""), test::planes_of(stacks), info);
     const LayerFile again = read_layers(folder.file("b.3mf"));
     ASSERT_EQ(again.parts.size(), 3U);
     for (std::size_t i = 0; i < 3; ++i)

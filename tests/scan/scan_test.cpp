@@ -53,13 +53,12 @@ double distance_to(const Layer& outline, const Point2& p) {
     return least;
 }
 
-double marked(const ScanVectors& vectors, std::size_t exposure) {
+double marked(const Plane& vectors, std::size_t exposure) {
     return measure_vectors(vectors.polylines[exposure], vectors.hatches[exposure].span(), {})
         .figures.marked_mm;
 }
 
-ScanVectors vectors_of(const ScanLayer& layer, const ScanStrategy& strategy = {},
-                       InsetCache* cache = nullptr) {
+Plane vectors_of(const ScanLayer& layer, const ScanStrategy& strategy = {}, InsetCache* cache = nullptr) {
     return scan(layer, {}, {}, strategy, {.cache = cache}).vectors;
 }
 
@@ -75,8 +74,8 @@ TEST(Scan, CountsTheVectorsOfAllRegionsBeforeItTakesMemory) {
     const ScanLayer layer(square);
     const std::vector<ScanLayer> beside{normal_layer({rectangle(0, 0, 50, 25)})};
     std::uint64_t points = 0;
-    const ScanVectors all = scan(layer, beside, beside, strategy).vectors;
-    for (std::size_t i = 0; i < all.exposures(); ++i)
+    const Plane all = scan(layer, beside, beside, strategy).vectors;
+    for (std::size_t i = 0; i < all.parts(); ++i)
         points += all.polylines[i].points.size() + all.hatches[i].size();
     const auto with = [&](const LayerLimits& limits) {
         static_cast<void>(scan(layer, beside, beside, strategy, {.limits = limits}));
@@ -100,10 +99,10 @@ TEST(Scan, GivesALayerForEachExposureWithTheHeightsOfItsOwn) {
     layer.z = 0.225;
     layer.bottom = 0.21;
     layer.top = 0.24;
-    const ScanVectors vectors = vectors_of(layer, strategy);
+    const Plane vectors = vectors_of(layer, strategy);
     const std::vector<Exposure> expected = exposures(strategy, "part");
-    ASSERT_EQ(vectors.exposures(), expected.size());
-    for (std::size_t i = 0; i < vectors.exposures(); ++i) {
+    ASSERT_EQ(vectors.parts(), expected.size());
+    for (std::size_t i = 0; i < vectors.parts(); ++i) {
         EXPECT_EQ(vectors.polylines[i].index, 7U);
         EXPECT_EQ(vectors.polylines[i].z, 0.225);
         EXPECT_EQ(vectors.polylines[i].bottom, 0.21);
@@ -210,9 +209,9 @@ TEST(Scan, LeavesNothingBareInWallsOfAnyThickness) {
                         EXPECT_LT(unreached(wall, strategy), strategy.accepted_mm2)
                             << contours << " contours, " << thick << " mm, turned by " << degrees
                             << ", layer " << index;
-                        const ScanVectors vectors = vectors_of(wall, strategy);
+                        const Plane vectors = vectors_of(wall, strategy);
                         double lines = 0;
-                        for (std::size_t i = 0; i < vectors.exposures(); ++i)
+                        for (std::size_t i = 0; i < vectors.parts(); ++i)
                             lines += marked(vectors, i);
                         with_lines += lines > 2 * length ? 1 : 0;
                     }
@@ -230,8 +229,8 @@ TEST(Scan, CountsWhatAHatchWithoutContoursLeavesBare) {
     std::size_t bare_layers = 0;
     for (std::uint64_t index = 0; index < 12; ++index) {
         const Layer wall = wall_at(0, 10, 0.15, index);
-        const ScanVectors vectors = vectors_of(wall, strategy);
-        ASSERT_EQ(vectors.exposures(), 1U);
+        const Plane vectors = vectors_of(wall, strategy);
+        ASSERT_EQ(vectors.parts(), 1U);
         const bool bare = vectors.hatches[0].empty();
         bare_layers += bare ? 1 : 0;
         if (bare) {
@@ -247,9 +246,9 @@ TEST(Scan, GivesALineOnlyToWallsThatItsHatchLeavesBare) {
     for (layer.index = 0; layer.index < 12; ++layer.index) {
         strategy.contours.thin_walls = ThinWalls::leave_out;
         const bool bare = unreached(layer, strategy) > strategy.accepted_mm2;
-        const ScanVectors before = vectors_of(layer, strategy);
+        const Plane before = vectors_of(layer, strategy);
         strategy.contours.thin_walls = ThinWalls::line;
-        const ScanVectors vectors = vectors_of(layer, strategy);
+        const Plane vectors = vectors_of(layer, strategy);
         EXPECT_TRUE(same_hatches(vectors.hatches[0], before.hatches[0])) << "the hatch stays as it is";
         ASSERT_LE(vectors.hatches[1].size(), 2U) << layer.index;
         if (bare) {
@@ -287,12 +286,12 @@ TEST(Scan, GivesThinWallsALineThatEveryOrderOfRingsHas) {
     const std::vector<Contour> rings{rectangle(0, 0, 10, 10), rectangle(12, 0, 12.09, 10),
                                      rectangle(13, 3, 19, 3.07), reversed(rectangle(2, 2, 3, 3))};
     const ScanStrategy strategy;
-    const ScanVectors vectors = vectors_of(normal_layer(rings), strategy);
+    const Plane vectors = vectors_of(normal_layer(rings), strategy);
     ASSERT_EQ(vectors.hatches[1].size(), 4U);
     EXPECT_EQ(vectors.polylines[1].rings, 2U);
     EXPECT_NEAR(marked(vectors, 1), 4 * 9.9 + 4 * 1.1 + 10 + 6, 0.15);
     EXPECT_LT(unreached(normal_layer(rings), strategy), 2e-3);
-    const ScanVectors again = vectors_of(layer_of({rings[2], rings[3], rings[1], rings[0]}), strategy);
+    const Plane again = vectors_of(layer_of({rings[2], rings[3], rings[1], rings[0]}), strategy);
     EXPECT_TRUE(same_hatches(again.hatches[1], vectors.hatches[1]));
 }
 
@@ -306,7 +305,7 @@ TEST(Scan, KeepsItsDistancesToTheOutline) {
     strategy.hatch.shortest = 0;
     for (int round = 0; round < rounds_within_reason(300); ++round) {
         const Layer layer = test::random_material(random, 16);
-        const ScanVectors vectors = vectors_of(layer, strategy);
+        const Plane vectors = vectors_of(layer, strategy);
         const double slack = 1e-6;
         for (const Point2& p : vectors.hatches[0])
             EXPECT_GE(distance_to(layer, p), 0.75 - slack) << round;
@@ -360,7 +359,7 @@ TEST(Scan, FindsSkinsUnderBodiesThatOverlapAlsoWhereNoneIsTooNarrow) {
     for (const double narrowest : {0.1, 0.0}) {
         strategy.downskin.narrowest = narrowest;
         const std::vector<Exposure> kinds = exposures(strategy, {});
-        const ScanVectors vectors = scan(layer, below, {}, strategy).vectors;
+        const Plane vectors = scan(layer, below, {}, strategy).vectors;
         double length = 0;
         for (std::size_t i = 0; i < kinds.size(); ++i)
             if (kinds[i].region == ScanRegion::downskin)
@@ -378,10 +377,10 @@ TEST(Scan, PutsRingsInTheirOrderWhereNothingMovesThem) {
     std::vector<Contour> rings;
     for (int i = 0; i < 6; ++i)
         rings.push_back(rectangle(20 * i, 0, 20 * i + 10, 10));
-    const ScanVectors expected = vectors_of(layer_of(rings), strategy);
+    const Plane expected = vectors_of(layer_of(rings), strategy);
     std::reverse(rings.begin(), rings.end());
-    const ScanVectors found = vectors_of(layer_of(rings), strategy);
-    for (std::size_t i = 0; i < expected.exposures(); ++i)
+    const Plane found = vectors_of(layer_of(rings), strategy);
+    for (std::size_t i = 0; i < expected.parts(); ++i)
         EXPECT_TRUE(same_contours(found.polylines[i], expected.polylines[i])) << i;
 }
 
@@ -393,10 +392,10 @@ TEST(Scan, KnowsNoWallsBetweenBodiesThatTouch) {
     const Layer one = normal_layer({rectangle(0, 0, 4, 4)});
     for (const HatchPattern pattern : {HatchPattern::lines, HatchPattern::stripes}) {
         strategy.hatch.pattern = pattern;
-        const ScanVectors found = vectors_of(two, strategy);
-        const ScanVectors expected = vectors_of(one, strategy);
-        ASSERT_EQ(found.exposures(), expected.exposures());
-        for (std::size_t i = 0; i < found.exposures(); ++i) {
+        const Plane found = vectors_of(two, strategy);
+        const Plane expected = vectors_of(one, strategy);
+        ASSERT_EQ(found.parts(), expected.parts());
+        for (std::size_t i = 0; i < found.parts(); ++i) {
             EXPECT_EQ(found.polylines[i].rings, expected.polylines[i].rings);
             EXPECT_EQ(found.hatches[i].size(), expected.hatches[i].size());
             EXPECT_NEAR(marked(found, i), marked(expected, i), 1e-6);
@@ -430,8 +429,8 @@ TEST(Scan, RegionsAreDisjointAndMakeUpTheLayer) {
         const std::vector<ScanLayer> above{stack[3], stack[4]};
         strategy.upskin.layers = 2;
         strategy.downskin.layers = 2;
-        const ScanVectors regions = scan(stack[2], below, above, strategy).vectors;
-        ASSERT_EQ(regions.exposures(), 3U);
+        const Plane regions = scan(stack[2], below, above, strategy).vectors;
+        ASSERT_EQ(regions.parts(), 3U);
         ScanStrategy plain = strategy;
         plain.upskin.layers = plain.downskin.layers = 0;
         const auto hatched = [&](const Layer& layer) {
@@ -503,7 +502,7 @@ TEST(Scan, SkinsReachIntoTheCoreByTheOverlap) {
     }
     const Layer layer = normal_layer({rectangle(0, 0, 10, 10)});
     const std::vector<ScanLayer> above{normal_layer({rectangle(0, 0, 4, 10)})};
-    const ScanVectors vectors = scan(layer, {}, above, strategy).vectors;
+    const Plane vectors = scan(layer, {}, above, strategy).vectors;
     EXPECT_NEAR(marked(vectors, 0), 40, 1e-6);
     EXPECT_NEAR(marked(vectors, 1), 65, 1e-6);
 }
@@ -561,10 +560,10 @@ TEST(Scan, OfSupportsGoesByTheirRulesAlone) {
     for (int round = 0; round < rounds_within_reason(50); ++round) {
         Layer layer = test::random_material(random, 16);
         layer.index = static_cast<std::uint64_t>(round);
-        const ScanVectors vectors = scan_support(layer, strategy).vectors;
-        const ScanVectors expected = vectors_of(layer, plain);
-        ASSERT_EQ(vectors.exposures(), support_exposures(strategy, "part").size());
-        for (std::size_t i = 0; i < vectors.exposures(); ++i) {
+        const Plane vectors = scan_support(layer, strategy).vectors;
+        const Plane expected = vectors_of(layer, plain);
+        ASSERT_EQ(vectors.parts(), support_exposures(strategy, "part").size());
+        for (std::size_t i = 0; i < vectors.parts(); ++i) {
             EXPECT_EQ(vectors.polylines[i].index, layer.index);
             EXPECT_TRUE(std::equal(vectors.polylines[i].points.begin(), vectors.polylines[i].points.end(),
                                    expected.polylines[i].points.begin(), expected.polylines[i].points.end()));
@@ -577,9 +576,9 @@ TEST(Scan, OfSupportsGoesByTheirRulesAlone) {
 
 TEST(Scan, OfNothingIsNothing) {
     for (const Layer& layer : {Layer{}, layer_of({{{1, 1}}}, {{{0, 0}, {1, 0}}})}) {
-        const ScanVectors vectors = vectors_of(layer);
-        EXPECT_EQ(vectors.exposures(), exposures({}, {}).size());
-        for (std::size_t i = 0; i < vectors.exposures(); ++i) {
+        const Plane vectors = vectors_of(layer);
+        EXPECT_EQ(vectors.parts(), exposures({}, {}).size());
+        for (std::size_t i = 0; i < vectors.parts(); ++i) {
             EXPECT_EQ(vectors.polylines[i].contours(), 0U);
             EXPECT_TRUE(vectors.polylines[i].points.empty() && vectors.hatches[i].empty());
         }
@@ -594,10 +593,10 @@ TEST(Scan, DoesNotDependOnTheOrderOfRings) {
     strategy.hatch.order = IslandOrder::random;
     for (int round = 0; round < rounds_within_reason(100); ++round) {
         std::vector<test::Contour> rings = contours(test::random_rings(random, 16));
-        const ScanVectors once = vectors_of(normal_layer(rings), strategy);
+        const Plane once = vectors_of(normal_layer(rings), strategy);
         std::reverse(rings.begin(), rings.end());
-        const ScanVectors again = vectors_of(normal_layer(rings), strategy);
-        for (std::size_t i = 0; i < once.exposures(); ++i) {
+        const Plane again = vectors_of(normal_layer(rings), strategy);
+        for (std::size_t i = 0; i < once.parts(); ++i) {
             EXPECT_TRUE(same_contours(once.polylines[i], again.polylines[i]));
             EXPECT_TRUE(same_hatches(once.hatches[i], again.hatches[i]));
         }
@@ -623,10 +622,10 @@ TEST(Scan, WithAMemoryIsTheSame) {
     for (std::size_t i = 1; i + 1 < layers.size(); ++i) {
         const std::vector<ScanLayer> below{layers[i - 1]};
         const std::vector<ScanLayer> above{layers[i + 1]};
-        const ScanVectors expected = scan(layers[i], below, above, strategy).vectors;
-        const ScanVectors found = scan(layers[i], below, above, strategy, {.cache = &memory}).vectors;
-        ASSERT_EQ(found.exposures(), expected.exposures());
-        for (std::size_t k = 0; k < found.exposures(); ++k) {
+        const Plane expected = scan(layers[i], below, above, strategy).vectors;
+        const Plane found = scan(layers[i], below, above, strategy, {.cache = &memory}).vectors;
+        ASSERT_EQ(found.parts(), expected.parts());
+        for (std::size_t k = 0; k < found.parts(); ++k) {
             EXPECT_EQ(contours(found.polylines[k]), contours(expected.polylines[k])) << i << ", " << k;
             EXPECT_TRUE(same_hatches(found.hatches[k], expected.hatches[k])) << i << ", " << k;
             EXPECT_EQ(found.polylines[k].index, layers[i].index);
@@ -641,10 +640,10 @@ TEST(Scan, RemembersLayersThatDifferByStraightPoints) {
         return layer_of({{{0, 0}, {10 * t, 0}, {10, 0}, {10, 10 * t}, {10, 10}, {0, 10}}});
     };
     InsetCache memory;
-    const ScanVectors first = vectors_of(wall(0.25), {}, &memory);
+    const Plane first = vectors_of(wall(0.25), {}, &memory);
     const std::shared_ptr<const InsetCache::Insets> kept = memory.last();
     ASSERT_NE(kept, nullptr);
-    const ScanVectors second = vectors_of(wall(0.75), {}, &memory);
+    const Plane second = vectors_of(wall(0.75), {}, &memory);
     EXPECT_EQ(memory.last(), kept);
     EXPECT_EQ(contours(first.polylines.back()), contours(second.polylines.back()));
     ASSERT_EQ(first.polylines.back().rings, 1U);

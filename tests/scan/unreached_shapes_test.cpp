@@ -103,7 +103,7 @@ ScanStrategy random_strategy(Random& random) {
 }
 
 /// The unreached area of everything.
-double measured_everywhere(const Layer& material, const ScanVectors& vectors, const ScanStrategy& strategy) {
+double measured_everywhere(const Layer& material, const Plane& vectors, const ScanStrategy& strategy) {
     Reached reached;
     const std::vector<Exposure> all = exposures(strategy, {});
     for (std::size_t i = 0; i < all.size(); ++i)
@@ -134,7 +134,7 @@ TEST(UnreachedShapes, HaveAllTheirBareMaterialWhereScanLooksForIt) {
             << strategy.hatch.cell << ", overlap " << strategy.hatch.overlap << ", shortest "
             << strategy.hatch.shortest << ", " << strategy.contours.count << " contours, "
             << thin_walls_name(strategy.contours.thin_walls) << ", area " << area;
-        for (std::size_t i = 0; i < scanned.vectors.exposures(); ++i) {
+        for (std::size_t i = 0; i < scanned.vectors.parts(); ++i) {
             const EdgeTree edges(layer.layer());
             const std::span<const Point2> lines = scanned.vectors.hatches[i].span();
             for (std::size_t k = 0; k + 1 < lines.size(); k += 2) {

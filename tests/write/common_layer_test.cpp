@@ -1,6 +1,7 @@
 #include "lamella/write/layer_writer.hpp"
 
 #include "fixtures/expect_error.hpp"
+#include "fixtures/layers.hpp"
 #include "sample_layers.hpp"
 #include "temporary_folder.hpp"
 
@@ -16,7 +17,7 @@ namespace {
 std::string written(std::string_view format, const LayerStack& layers, const LayerFileInfo& info,
                     const LayerWriteOptions& options = {}) {
     const TemporaryFolder folder;
-    write_layers(folder.file("out"), layer_format(format, ""), layers, info, options);
+    write_layers(folder.file("out"), layer_format(format, ""), test::planes_of(layers), info, options);
     return file_bytes(folder.file("out"));
 }
 

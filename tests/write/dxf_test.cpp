@@ -1,5 +1,6 @@
 #include "lamella/contour/measure.hpp"
 
+#include "fixtures/layers.hpp"
 #include "sample_layers.hpp"
 #include "temporary_folder.hpp"
 
@@ -64,7 +65,7 @@ TEST(Dxf, HasAPolylineForEachContourAtItsHeight) {
     for (std::uint64_t seed = 1; seed < 20; ++seed) {
         const LayerStack layers = random_layers(seed, 10, 40, {5, -5}, true);
         const TemporaryFolder folder;
-        write_layers(folder.file("x.dxf"), layer_format("dxf", ""), layers, info_of(layers));
+        write_layers(folder.file("x.dxf"), layer_format("dxf", ""), test::planes_of(layers), info_of(layers));
         const std::vector<Polyline> found = polylines_of(file_bytes(folder.file("x.dxf")));
         std::size_t next = 0;
         for (const Layer& layer : layers)
@@ -98,7 +99,7 @@ TEST(Dxf, NamesThePartIfThereAreSeveral) {
     const TemporaryFolder folder;
     const auto writer = layer_format("dxf", "").open(folder.file("x"), info, options_for_any());
     for (const Layer& layer : layers)
-        writer->prepare(std::vector<Layer>{layer, layer})();
+        writer->prepare(Plane(std::vector<Layer>{layer, layer}))();
     writer->finish();
     const std::vector<Polyline> found = polylines_of(file_bytes(folder.file("x")));
     ASSERT_EQ(found.size(), 8U);

@@ -94,7 +94,8 @@ std::vector<Feature> read_features(const std::string& bytes) {
 
 std::string written(const LayerStack& layers) {
     const TemporaryFolder folder;
-    write_layers(folder.file("x.geojson"), layer_format("geojson", ""), layers, info_of(layers));
+    write_layers(folder.file("x.geojson"), layer_format("geojson", ""), test::planes_of(layers),
+                 info_of(layers));
     return file_bytes(folder.file("x.geojson"));
 }
 
@@ -183,7 +184,7 @@ TEST(GeoJson, HasLabelsAndIsValidWithoutLayers) {
     const TemporaryFolder folder;
     const auto writer = layer_format("geojson", "").open(folder.file("x"), info, options_for_any());
     for (const Layer& layer : layers)
-        writer->prepare(std::vector<Layer>{layer, layer})();
+        writer->prepare(Plane(std::vector<Layer>{layer, layer}))();
     writer->finish();
     const std::vector<Feature> features = read_features(file_bytes(folder.file("x")));
     ASSERT_EQ(features.size(), 4U);

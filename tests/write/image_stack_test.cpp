@@ -3,6 +3,7 @@
 #include "lamella/polygon/fill.hpp"
 #include "lamella/write/layer_writer.hpp"
 
+#include "fixtures/layers.hpp"
 #include "png_file.hpp"
 #include "sample_layers.hpp"
 #include "temporary_folder.hpp"
@@ -23,7 +24,7 @@ namespace fs = std::filesystem;
 TEST(ImageFolder, HasOneImageForEachLayerAndAListOfThem) {
     const TemporaryFolder folder;
     const LayerStack layers = square_with_hole();
-    write_layers(folder.file("out"), layer_format("png", ""), layers, info_of(layers),
+    write_layers(folder.file("out"), layer_format("png", ""), test::planes_of(layers), info_of(layers),
                  {.image = {.pixel_mm = {{0.1, 0.1}}}});
     EXPECT_EQ(folder.entries(), std::vector<std::string>{"out"});
     for (const char* name : {"out/00000.png", "out/00001.png"}) {
@@ -48,7 +49,7 @@ TEST(ImageFolder, HasOneImageForEachLayerAndAListOfThem) {
 TEST(ImageFolder, ShowsTheAreaOfEachLayer) {
     const LayerStack layers = random_layers(4, 8, 20, {3, 4}, false);
     const TemporaryFolder folder;
-    write_layers(folder.file("out"), layer_format("png", ""), layers, info_of(layers),
+    write_layers(folder.file("out"), layer_format("png", ""), test::planes_of(layers), info_of(layers),
                  {.image = {.pixel_mm = {{0.02, 0.04}}}});
     std::vector<std::string> names;
     for (std::size_t i = 0; i < layers.size(); ++i) {
@@ -73,7 +74,7 @@ TEST(ImageFolder, PutsAllPartsIntoOneImage) {
     const std::vector<LayerStack> parts{{left.finish(0, 0.5, 0, 1)}, {right.finish(0, 0.5, 0, 1)}};
     LayerFileInfo info{.box = {{0, 0, 0}, {10, 10, 1}}, .layers = 1, .bottom = 0};
     info.parts.resize(2);
-    write_layers(folder.file("out"), layer_format("png", ""), parts, info);
+    write_layers(folder.file("out"), layer_format("png", ""), test::planes_of(parts), info);
     const PngFile image = read_png(file_bytes(folder.file("out/00000.png")));
     EXPECT_EQ(image.values, std::vector<std::uint8_t>(200 * 200, 255));
 }
@@ -82,17 +83,17 @@ TEST(ImageFolder, ReplacesWhatItMadeAndNothingElse) {
     const TemporaryFolder folder;
     const LayerStack layers = square_with_hole();
     const LayerFormat& format = layer_format("png", "");
-    write_layers(folder.file("out"), format, layers, info_of(layers));
+    write_layers(folder.file("out"), format, test::planes_of(layers), info_of(layers));
     LayerStack one{layers.front()};
-    write_layers(folder.file("out"), format, one, info_of(one));
+    write_layers(folder.file("out"), format, test::planes_of(one), info_of(one));
     EXPECT_FALSE(fs::exists(folder.file("out/00001.png")));
     write_file(folder.file("out/00007.txt"), "mine");
-    EXPECT_THROW(write_layers(folder.file("out"), format, one, info_of(one)), Error);
+    EXPECT_THROW(write_layers(folder.file("out"), format, test::planes_of(one), info_of(one)), Error);
     EXPECT_EQ(file_bytes(folder.file("out/00007.txt")), "mine");
     // Pictures without our list could be anybody's.
     fs::remove(folder.file("out/00007.txt"));
     fs::remove(folder.file("out/manifest.json"));
-    EXPECT_THROW(write_layers(folder.file("out"), format, one, info_of(one)), Error);
+    EXPECT_THROW(write_layers(folder.file("out"), format, test::planes_of(one), info_of(one)), Error);
     EXPECT_TRUE(fs::exists(folder.file("out/00000.png")));
 }
 
@@ -101,7 +102,8 @@ TEST(ImageFolder, RefusesTwoLayersOfOneIndex) {
     layers[1].index = 0;
     for (const char* name : {"png", "png-zip"}) {
         const TemporaryFolder folder;
-        EXPECT_THROW(write_layers(folder.file("out"), layer_format(name, ""), layers, info_of(layers)),
+        EXPECT_THROW(write_layers(folder.file("out"), layer_format(name, ""), test::planes_of(layers),
+                                  info_of(layers)),
                      Error);
         EXPECT_TRUE(folder.entries().empty()) << name;
     }
@@ -110,8 +112,9 @@ TEST(ImageFolder, RefusesTwoLayersOfOneIndex) {
 TEST(ImageArchive, HasTheImagesOfTheFolderInFront) {
     const TemporaryFolder folder;
     const LayerStack layers = square_with_hole();
-    write_layers(folder.file("out.zip"), layer_format("", "out.zip"), layers, info_of(layers));
-    write_layers(folder.file("out"), layer_format("png", ""), layers, info_of(layers));
+    write_layers(folder.file("out.zip"), layer_format("", "out.zip"), test::planes_of(layers),
+                 info_of(layers));
+    write_layers(folder.file("out"), layer_format("png", ""), test::planes_of(layers), info_of(layers));
     const std::string archive = file_bytes(folder.file("out.zip"));
     EXPECT_EQ(archive.substr(0, 2), "PK");
     for (const char* name : {"out/00000.png", "out/00001.png"})

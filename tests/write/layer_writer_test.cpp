@@ -1,6 +1,7 @@
 #include "lamella/write/layer_writer.hpp"
 
 #include "fixtures/expect_error.hpp"
+#include "fixtures/layers.hpp"
 #include "plain_formats.hpp"
 #include "sample_layers.hpp"
 #include "temporary_folder.hpp"
@@ -59,9 +60,9 @@ TEST(LayerWriter, WritesToMemoryWhatItWritesToFiles) {
             EXPECT_NE(error_of(ErrorKind::usage, open).find("a folder"), std::string::npos);
             continue;
         }
-        write_layers(folder.file("layers"), format, layers, info, options_for_any());
+        write_layers(folder.file("layers"), format, test::planes_of(layers), info, options_for_any());
         info.memory = &memory;
-        write_layers(folder.file("missing/name"), format, layers, info, options_for_any());
+        write_layers(folder.file("missing/name"), format, test::planes_of(layers), info, options_for_any());
         EXPECT_TRUE(memory == file_bytes(folder.file("layers"))) << format.name;
         EXPECT_EQ(folder.entries().size(), 1U);
     }
@@ -70,13 +71,14 @@ TEST(LayerWriter, WritesToMemoryWhatItWritesToFiles) {
 /// Notes what it is given to write.
 class NotingWriter final : public LayerWriter {
   public:
-    explicit NotingWriter(std::uint64_t fails_at = ~std::uint64_t{0}) : fails_at_(fails_at) {}
+    /// Throws at this index, and requests to stop at the 100th plane.
+    explicit NotingWriter(std::uint64_t fails_at = ~std::uint64_t{0}, CancelFlag* stop = nullptr)
+        : fails_at_(fails_at), stop_(stop) {}
 
-    using LayerWriter::prepare;
-    [[nodiscard]] Commit prepare(const ScanVectors& vectors) override { return prepare(vectors.polylines); }
-    [[nodiscard]] Commit prepare(std::span<const Layer> parts) override {
-        ++prepared;
-        return [this, index = parts.front().index] {
+    [[nodiscard]] Commit prepare(const Plane& plane) override {
+        if (++prepared == 100 && stop_ != nullptr)
+            stop_->request();
+        return [this, index = plane.polylines.front().index] {
             if (index == fails_at_)
                 throw Error(ErrorKind::output, "the disk is full");
             written.push_back(index);
@@ -90,10 +92,14 @@ class NotingWriter final : public LayerWriter {
 
   private:
     std::uint64_t fails_at_;
+    CancelFlag* stop_;
 };
 
-ScanVectors empty_plane(std::size_t i) {
-    return {{{.index = i}}, {{}}};
+std::vector<Plane> empty_planes(std::size_t count) {
+    std::vector<Plane> planes;
+    for (std::size_t i = 0; i < count; ++i)
+        planes.emplace_back(Layer{.index = i});
+    return planes;
 }
 
 TEST(WritePlanes, WritesInOrderOnAnyNumberOfThreadsAndReportsHowFarItIs) {
@@ -102,7 +108,7 @@ TEST(WritePlanes, WritesInOrderOnAnyNumberOfThreadsAndReportsHowFarItIs) {
     for (const unsigned threads : {1U, 2U, 7U}) {
         NotingWriter writer;
         std::uint64_t done = 0;
-        write_planes(writer, expected.size(), empty_plane,
+        write_planes(writer, empty_planes(expected.size()),
                      {.threads = threads, .progress = [&](const Progress& p) {
                           EXPECT_EQ(p.stage, Stage::write);
                           EXPECT_GE(p.done, done);
@@ -110,7 +116,7 @@ TEST(WritePlanes, WritesInOrderOnAnyNumberOfThreadsAndReportsHowFarItIs) {
                       }});
         EXPECT_EQ(writer.written, expected);
         EXPECT_EQ(done, expected.size());
-        write_planes(writer, 0, empty_plane, {.threads = threads});
+        write_planes(writer, {}, {.threads = threads});
         EXPECT_EQ(writer.written, expected);
     }
 }
@@ -118,21 +124,17 @@ TEST(WritePlanes, WritesInOrderOnAnyNumberOfThreadsAndReportsHowFarItIs) {
 TEST(WritePlanes, EndsAtTheFirstFailureAndWhenItIsCancelled) {
     for (const unsigned threads : {1U, 2U, 7U}) {
         NotingWriter full(100);
-        EXPECT_EQ(
-            error_of(ErrorKind::output, [&] { write_planes(full, 5000, empty_plane, {.threads = threads}); }),
-            "the disk is full");
+        EXPECT_EQ(error_of(ErrorKind::output,
+                           [&] { write_planes(full, empty_planes(5000), {.threads = threads}); }),
+                  "the disk is full");
         EXPECT_EQ(full.written.size(), 100U);
         EXPECT_LE(full.prepared, 100 + 2 * threads);
 
-        NotingWriter writer;
         CancelFlag stop;
-        const auto parts_of = [&](std::size_t i) {
-            if (i == 100)
-                stop.request();
-            return empty_plane(i);
-        };
-        (void)error_of(ErrorKind::cancelled,
-                       [&] { write_planes(writer, 5000, parts_of, {.threads = threads, .cancel = &stop}); });
+        NotingWriter writer(~std::uint64_t{0}, &stop);
+        (void)error_of(ErrorKind::cancelled, [&] {
+            write_planes(writer, empty_planes(5000), {.threads = threads, .cancel = &stop});
+        });
         EXPECT_LE(writer.prepared, 100 + 2 * threads);
         EXPECT_LE(writer.written.size(), writer.prepared);
     }
@@ -149,7 +151,7 @@ TEST(WriteLayers, TakesFormatAndHeaderFromPathAndLayers) {
         header.parts.front().box = header.box;
         for (const char* name : {"part.cli", "part.svg", "part.slc", "part.3mf", "part.json"}) {
             write_layers(folder.file(name), layers);
-            write_layers(folder.file("expected"), layer_format("", name), layers, header);
+            write_layers(folder.file("expected"), layer_format("", name), test::planes_of(layers), header);
             EXPECT_EQ(file_bytes(folder.file(name)), file_bytes(folder.file("expected"))) << name;
         }
     }

@@ -1,6 +1,7 @@
 #include "lamella/core/error.hpp"
 #include "lamella/write/layer_writer.hpp"
 
+#include "fixtures/layers.hpp"
 #include "sample_layers.hpp"
 #include "temporary_folder.hpp"
 
@@ -17,7 +18,8 @@ namespace fs = std::filesystem;
 
 std::string svg(const LayerStack& layers, const LayerWriteOptions& options = {}) {
     const TemporaryFolder folder;
-    write_layers(folder.file("out.svg"), layer_format("svg", ""), layers, info_of(layers), options);
+    write_layers(folder.file("out.svg"), layer_format("svg", ""), test::planes_of(layers), info_of(layers),
+                 options);
     return file_bytes(folder.file("out.svg"));
 }
 
@@ -81,7 +83,7 @@ TEST(LayeredSvg, KeepsTheOrderInWhichABeamFollowsRings) {
     LayerFileInfo info = info_of(layers);
     info.parts.front().exposure = Exposure{};
     const TemporaryFolder folder;
-    write_layers(folder.file("out.svg"), layer_format("svg", ""), layers, info);
+    write_layers(folder.file("out.svg"), layer_format("svg", ""), test::planes_of(layers), info);
     const std::string text = file_bytes(folder.file("out.svg"));
     EXPECT_LT(text.find("points=\"4,4"), text.find("points=\"0,0"));
 }
@@ -97,8 +99,9 @@ TEST(LayeredSvg, HasAGroupForAPartAloneThatHasAName) {
     const TemporaryFolder folder;
     LayerFileInfo info = info_of(square_with_hole());
     info.parts = {{.label = "bracket"}};
-    EXPECT_TRUE(
-        write_layers(folder.file("out.svg"), layer_format("svg", ""), square_with_hole(), info).empty());
+    EXPECT_TRUE(write_layers(folder.file("out.svg"), layer_format("svg", ""),
+                             test::planes_of(square_with_hole()), info)
+                    .empty());
     EXPECT_TRUE(contains(file_bytes(folder.file("out.svg")),
                          "<g data-lamella-part=\"1\" data-lamella-label=\"bracket\">\n    <polygon"));
 }
@@ -109,7 +112,8 @@ TEST(SvgLayers, WritesOneImagePerLayer) {
     LayerBuilder builder;
     add_contour(builder, {{1, 1}, {9, 9}}, false);
     layers.push_back(builder.finish(12, 1.25, 1, 1.5));
-    write_layers(folder.file("out"), layer_format("svg-layers", ""), layers, info_of(layers));
+    write_layers(folder.file("out"), layer_format("svg-layers", ""), test::planes_of(layers),
+                 info_of(layers));
     EXPECT_EQ(folder.entries(), std::vector<std::string>{"out"});
     const std::string first = file_bytes(folder.path() / "out" / "layer_00000.svg");
     EXPECT_EQ(first, "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
@@ -133,7 +137,8 @@ TEST(SvgLayers, ReplacesItsOwnImagesAndNothingElse) {
     const TemporaryFolder folder;
     LayerStack layers = square_with_hole();
     const auto write = [&] {
-        write_layers(folder.file("out"), layer_format("svg-layers", ""), layers, info_of(layers));
+        write_layers(folder.file("out"), layer_format("svg-layers", ""), test::planes_of(layers),
+                     info_of(layers));
     };
     write();
     layers.pop_back();
@@ -150,8 +155,8 @@ TEST(SvgLayers, RefusesTwoLayersOfOneIndexAndStandardOutput) {
     LayerStack layers = square_with_hole();
     layers[1].index = 0;
     const LayerFormat& format = layer_format("svg-layers", "");
-    EXPECT_THROW(write_layers(folder.file("out"), format, layers, info_of(layers)), Error);
-    EXPECT_THROW(write_layers("-", format, layers, info_of(layers)), Error);
+    EXPECT_THROW(write_layers(folder.file("out"), format, test::planes_of(layers), info_of(layers)), Error);
+    EXPECT_THROW(write_layers("-", format, test::planes_of(layers), info_of(layers)), Error);
     EXPECT_TRUE(folder.entries().empty());
 }
 

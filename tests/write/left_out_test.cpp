@@ -2,6 +2,7 @@
 #include "lamella/write/layer_writer.hpp"
 
 #include "fixtures/expect_error.hpp"
+#include "fixtures/layers.hpp"
 #include "plain_formats.hpp"
 #include "sample_layers.hpp"
 #include "temporary_folder.hpp"
@@ -30,8 +31,8 @@ TEST(LayerWriter, SaysWhichGapsBetweenLayersAreLost) {
         *height += 2;
     const TemporaryFolder folder;
     for (const LayerFormat* format : plain_formats()) {
-        const std::vector<std::string> warnings =
-            write_layers(folder.file("out"), *format, layers, info_of(layers), options_for_any());
+        const std::vector<std::string> warnings = write_layers(
+            folder.file("out"), *format, test::planes_of(layers), info_of(layers), options_for_any());
         const bool lost = std::any_of(warnings.begin(), warnings.end(), [](const std::string& warning) {
             return warning.find("1 gap or overlap of layers was left out, the lowest at z = 2.75 mm") !=
                    std::string::npos;
@@ -41,7 +42,8 @@ TEST(LayerWriter, SaysWhichGapsBetweenLayersAreLost) {
             << format->name;
     }
     const std::string error = error_of(ErrorKind::usage, [&] {
-        write_layers(folder.file("out"), layer_format("sl1", ""), layers, info_of(layers), options_for_any());
+        write_layers(folder.file("out"), layer_format("sl1", ""), test::planes_of(layers), info_of(layers),
+                     options_for_any());
     });
     EXPECT_NE(error.find("layer 2 begins at 2.5 mm, the one before ends at 1 mm"), std::string::npos)
         << error;
@@ -64,7 +66,8 @@ TEST(LayerWriter, SaysWhichCutsAreLost) {
             for (Layer& layer : layers)
                 layer.z = layer.bottom + fraction * layer.thickness();
             for (const std::string& line :
-                 write_layers(folder.file("layers"), format, layers, info_of(layers), options_for_any()))
+                 write_layers(folder.file("layers"), format, test::planes_of(layers), info_of(layers),
+                              options_for_any()))
                 if (line.find(" cut ") != std::string::npos)
                     return line;
             return std::string();
@@ -83,8 +86,8 @@ TEST(LayerWriter, SaysWhichCutsAreLost) {
         if (!format.cuts && !format.filled_parts) { // which warn of parts without parameters
             EXPECT_TRUE(error_of(ErrorKind::defect,
                                  [&] {
-                                     write_layers(folder.file("layers"), format, layers, info_of(layers),
-                                                  options);
+                                     write_layers(folder.file("layers"), format, test::planes_of(layers),
+                                                  info_of(layers), options);
                                  })
                             .find("1 layer was cut at the top") != std::string::npos)
                 << format.name;
@@ -101,7 +104,7 @@ TEST(LayerWriter, SaysWhichLabelsAreNotWrittenAsTheyAre) {
         if (is_one_of(format->name, {"slc", "dxf", "html", "png-zip"})) // no labels, or for looking at
             continue;
         const std::vector<std::string> warnings =
-            write_layers(folder.file("out"), *format, layers, info, options_for_any());
+            write_layers(folder.file("out"), *format, test::planes_of(layers), info, options_for_any());
         EXPECT_TRUE(std::any_of(warnings.begin(), warnings.end(), [](const std::string& warning) {
             return warning.find("1 label was changed") != std::string::npos;
         })) << format->name;
@@ -121,7 +124,7 @@ TEST(LayerWriter, LabelsNeverChangeWhatAPartIs) {
         info.parts = {{.label = "x core hatch"}, {.label = "y"}, {.label = "core contour 2"}};
         const std::vector<LayerStack> parts(3, layers);
         const std::vector<std::string> warnings =
-            write_layers(folder.file("contours"), layer_format(format, ""), parts, info);
+            write_layers(folder.file("contours"), layer_format(format, ""), test::planes_of(parts), info);
         EXPECT_TRUE(
             says(warnings, "1 label was changed, the first from \"x core hatch\" to \"x core hatch part\""))
             << format;
@@ -134,7 +137,7 @@ TEST(LayerWriter, LabelsNeverChangeWhatAPartIs) {
         const Exposure exposure{
             .part = std::string(5000, 'x'), .contour = 2, .parameters = unknown_parameters()};
         info.parts = {{.label = exposure.label(), .exposure = exposure}};
-        std::vector<ScanVectors> planes(layers.size());
+        std::vector<Plane> planes(layers.size());
         for (std::size_t i = 0; i < layers.size(); ++i)
             planes[i].add(layers[i], {});
         static_cast<void>(write_layers(folder.file("vectors"), layer_format(format, ""), planes, info));
@@ -149,7 +152,7 @@ TEST(LayerWriter, WarnsOfChangedLabelsOnceForAllFilesOfAnArchive) {
     const LayerStack layers = square_with_hole();
     LayerFileInfo info = info_of(layers);
     info.parts.clear();
-    std::vector<ScanVectors> planes(layers.size());
+    std::vector<Plane> planes(layers.size());
     for (const char* part : {"a,1", "b,2", "c,3"}) {
         const Exposure exposure{.part = part, .contour = 1, .parameters = unknown_parameters()};
         info.parts.push_back({.label = exposure.label(), .exposure = exposure});
@@ -171,8 +174,9 @@ TEST(LayerWriter, ShowsALabelThatReadsAsItsEscapedForm) {
     const LayerStack layers = square_with_hole();
     LayerFileInfo info = info_of(layers);
     info.parts = {{.label = "new\nline"}};
-    EXPECT_TRUE(says(write_layers(folder.file("a.json"), layer_format("json", ""), layers, info),
-                     R"(1 label was changed, the first reads "new\x0aline" now)"));
+    EXPECT_TRUE(
+        says(write_layers(folder.file("a.json"), layer_format("json", ""), test::planes_of(layers), info),
+             R"(1 label was changed, the first reads "new\x0aline" now)"));
 }
 
 TEST(LayerWriter, SaysWhichLabelsHaveNoPlace) {
@@ -181,9 +185,10 @@ TEST(LayerWriter, SaysWhichLabelsHaveNoPlace) {
     LayerFileInfo info = info_of(layers);
     for (const char* format : {"slc", "dxf"}) {
         info.parts = {{.label = "part"}};
-        EXPECT_TRUE(write_layers(folder.file("out"), layer_format(format, ""), layers, info).empty());
+        EXPECT_TRUE(write_layers(folder.file("out"), layer_format(format, ""), test::planes_of(layers), info)
+                        .empty());
         info.parts = {{.label = "bracket"}};
-        EXPECT_EQ(write_layers(folder.file("out"), layer_format(format, ""), layers, info),
+        EXPECT_EQ(write_layers(folder.file("out"), layer_format(format, ""), test::planes_of(layers), info),
                   (std::vector<std::string>{
                       "1 label was not written, the first \"bracket\": the format cannot hold labels"}))
             << format;
@@ -197,8 +202,9 @@ TEST(LayerWriter, SaysWhichPartsAreSupportsWhereTheFormatCannot) {
     info.parts = {{.label = "body"}, {.label = "foot", .support = true}, {.label = "leg", .support = true}};
     constexpr std::string_view text = "2 parts are supports: the format cannot hold that; 3mf has";
     for (const LayerFormat* format : plain_formats()) {
-        const std::vector<std::string> warnings = write_layers(
-            folder.file("out"), *format, std::vector<LayerStack>(3, stack), info, options_for_any());
+        const std::vector<std::string> warnings =
+            write_layers(folder.file("out"), *format, test::planes_of(std::vector<LayerStack>(3, stack)),
+                         info, options_for_any());
         EXPECT_EQ(says(warnings, text), !is_one_of(format->name, {"3mf", "html", "png-zip"})) << format->name;
         EXPECT_LE(std::count_if(warnings.begin(), warnings.end(),
                                 [](const std::string& warning) {
@@ -208,9 +214,9 @@ TEST(LayerWriter, SaysWhichPartsAreSupportsWhereTheFormatCannot) {
     }
     for (PartInfo& part : info.parts)
         part.exposure = Exposure{.part = part.label, .region = ScanRegion::support, .parameters = {}};
-    EXPECT_FALSE(says(
-        write_layers(folder.file("out"), layer_format("ovf", ""), std::vector<LayerStack>(3, stack), info),
-        "supports"));
+    EXPECT_FALSE(says(write_layers(folder.file("out"), layer_format("ovf", ""),
+                                   test::planes_of(std::vector<LayerStack>(3, stack)), info),
+                      "supports"));
 }
 
 TEST(LayerWriter, CountsContoursThatVanishHoweverFineTheFormatIs) {
@@ -219,7 +225,8 @@ TEST(LayerWriter, CountsContoursThatVanishHoweverFineTheFormatIs) {
     add_contour(builder, {{0, 0}, {1e-4, 0}, {0, 1e-4}});
     const LayerStack layers{builder.finish(0, 0.5, 0, 1)};
     for (const char* format : {"cli-ascii", "svg", "3mf", "dxf", "geojson", "3mf-toolpath"})
-        EXPECT_TRUE(says(write_layers(folder.file("out"), layer_format(format, ""), layers, info_of(layers)),
+        EXPECT_TRUE(says(write_layers(folder.file("out"), layer_format(format, ""), test::planes_of(layers),
+                                      info_of(layers)),
                          "rounding left out 1 contour, first in layer 0;"))
             << format;
 }
@@ -230,8 +237,9 @@ TEST(LayerWriter, SaysNothingOfPointsThatSinglePrecisionKeepsFarFromTheOrigin) {
     add_contour(builder, {{0, 0}, {1e7, 0}, {1e7, 1e7}});
     const LayerStack layers{builder.finish(0, 0.5, 0, 1)};
     for (const char* format : {"cli", "slc"})
-        EXPECT_TRUE(
-            write_layers(folder.file("out"), layer_format(format, ""), layers, info_of(layers)).empty())
+        EXPECT_TRUE(write_layers(folder.file("out"), layer_format(format, ""), test::planes_of(layers),
+                                 info_of(layers))
+                        .empty())
             << format;
 }
 
@@ -245,7 +253,7 @@ TEST(WriteLosses, AreTheSameHoweverTheLayersAreDividedIntoRanges) {
     const auto losses_of = [&](std::size_t begin, std::size_t end) {
         WriteLosses losses;
         for (std::size_t i = begin; i < end; ++i)
-            losses.add(losses_of_plane({std::span(&layers[i], 1)}));
+            losses.add(losses_of_plane(layers[i]));
         return losses;
     };
     const WriteLosses all = losses_of(0, 12);

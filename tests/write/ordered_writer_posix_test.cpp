@@ -1,6 +1,7 @@
 #include "lamella/write/layer_writer.hpp"
 
 #include "fixtures/expect_error.hpp"
+#include "fixtures/layers.hpp"
 #include "sample_layers.hpp"
 
 #include <gtest/gtest.h>
@@ -16,7 +17,7 @@ TEST(LayerWriter, ReportsAFullDisk) {
         if (format.directory)
             continue;
         const std::string text = test::error_of(ErrorKind::output, [&] {
-            write_layers("/dev/full", format, layers, info_of(layers), options_for_any());
+            write_layers("/dev/full", format, test::planes_of(layers), info_of(layers), options_for_any());
         });
         EXPECT_NE(text.find("disk is full"), std::string::npos) << text;
     }

@@ -85,7 +85,7 @@ TEST(PageBytes, HoldTheContoursOfAPlaneWithinHalfAStep) {
         const std::vector<Point2> locations{{1, 2}, {-3, 4.5}};
         const PageGrid grid = page_grid(box);
         std::uint64_t shown = 0;
-        const NumberBytes bytes = layer_numbers(PlaneView{layers}, parts, locations, grid, shown);
+        const NumberBytes bytes = layer_numbers(Plane(layers), parts, locations, grid, shown);
         const PageLayer read =
             page_layer(bytes.view(), parts.size(), grid.step_mm,
                        {static_cast<double>(grid.origin.x), static_cast<double>(grid.origin.y)});

@@ -45,13 +45,13 @@ class Cursor {
 };
 
 /// Two parts on two planes: the first has a ring and a chain, the second hatch lines and, above, nothing.
-std::vector<ScanVectors> two_planes() {
+std::vector<Plane> two_planes() {
     LayerBuilder first;
     add_contour(first, {{0, 0}, {1, 0}, {0.1, 1}});
     add_contour(first, {{5, 5}, {6, 0.25}}, false);
     LayerBuilder second;
     add_contour(second, {{2, 2}, {3, 2}, {2, 3}});
-    std::vector<ScanVectors> planes(2);
+    std::vector<Plane> planes(2);
     planes[0].polylines = {first.finish(7, 0.05, 0, 0.1), second.finish(7, 0.05, 0, 0.1)};
     planes[0].hatches = {{}, PointArray(std::vector<Point2>{{2.1, 2.1}, {2.9, 2.1}, {2.1, 2.3}, {2.7, 2.3}})};
     LayerBuilder above;
@@ -62,7 +62,7 @@ std::vector<ScanVectors> two_planes() {
 }
 
 TEST(Raw, HasTheArraysOfOneLayerAfterTheOther) {
-    const std::vector<ScanVectors> planes = two_planes();
+    const std::vector<Plane> planes = two_planes();
     const TemporaryFolder folder;
     LayerFileInfo info{
         .box = {}, .layers = planes.size(), .parts = {{.label = "left \"1\""}, {.label = "right"}}};
@@ -70,7 +70,7 @@ TEST(Raw, HasTheArraysOfOneLayerAfterTheOther) {
     info.box.add(Point3{6, 5, 0.2});
     const auto writer =
         open_layer_writer(folder.file("out"), layer_format("raw", ""), info, options_for_any());
-    for (const ScanVectors& plane : planes) {
+    for (const Plane& plane : planes) {
         Completions none;
         writer->prepare(plane).in_order(none);
     }
@@ -86,7 +86,7 @@ TEST(Raw, HasTheArraysOfOneLayerAfterTheOther) {
         facts.starts_with(R"({"units":"mm","layers":2,"parts":[{"label":"left \"1\""},{"label":"right"}],)"
                           R"("rule":"section_above"})"))
         << facts;
-    for (const ScanVectors& plane : planes) {
+    for (const Plane& plane : planes) {
         const Layer& first = plane.polylines.front();
         EXPECT_EQ(cursor.number<std::uint64_t>(), first.index);
         EXPECT_EQ(cursor.numbers<double>(3), (std::vector<double>{first.z, first.bottom, first.top}));

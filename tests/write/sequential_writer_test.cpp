@@ -31,8 +31,8 @@ class Sample final : public SequentialWriter {
     std::string layer_header(const PlanePosition& plane) override {
         return fmt::format(" {}:", plane.position);
     }
-    void format(const PlaneView& plane, ByteBuffer& out) const override {
-        out.append(fmt::format("{}", plane.layers.front().index));
+    void format(const Plane& plane, ByteBuffer& out) const override {
+        out.append(fmt::format("{}", plane.polylines.front().index));
     }
     std::string tail() override { return " tail)"; }
 };
@@ -45,7 +45,7 @@ TEST(SequentialWriter, WritesHeaderLayersAndTailInOrder) {
     Sample writer(folder.file("x"), info_of(layers));
     std::vector<Commit> prepared(layers.size());
     for (std::size_t i = layers.size(); i-- > 0;) // prepared in any order
-        prepared[i] = writer.prepare({&layers[i], 1});
+        prepared[i] = writer.prepare(layers[i]);
     for (const auto& write : prepared)
         write();
     EXPECT_FALSE(std::filesystem::exists(folder.file("x"))) << "no name before the end";
@@ -58,7 +58,7 @@ TEST(SequentialWriter, CompressesEachLayerIfTheNameAsksForIt) {
     const TemporaryFolder folder;
     Sample writer(folder.file("x.gz"), info_of(layers));
     for (const Layer& layer : layers)
-        writer.prepare({&layer, 1})();
+        writer.prepare(layer)();
     writer.finish();
     const std::string bytes = file_bytes(folder.file("x.gz"));
     EXPECT_EQ(writer.bytes(), bytes.size());
@@ -84,7 +84,7 @@ TEST(SequentialWriter, WritesChunksThatMakeUpTheFile) {
                 info.chunk = &chunk;
                 Sample writer("", info);
                 for (; begin < end; ++begin)
-                    writer.prepare({&layers[begin], 1})();
+                    writer.prepare(layers[begin])();
                 writer.finish();
                 EXPECT_EQ(writer.bytes(), bytes.size());
                 all += bytes;

@@ -1,6 +1,7 @@
 #include "lamella/core/error.hpp"
 #include "lamella/write/layer_writer.hpp"
 
+#include "fixtures/layers.hpp"
 #include "png_file.hpp"
 #include "sample_layers.hpp"
 #include "temporary_folder.hpp"
@@ -34,7 +35,8 @@ LayerStack stack_of(const std::vector<double>& thicknesses) {
 std::string refusal(const LayerStack& layers, const LayerWriteOptions& options = {}) {
     const TemporaryFolder folder;
     try {
-        write_layers(folder.file("job.sl1"), layer_format("", "job.sl1"), layers, info_of(layers), options);
+        write_layers(folder.file("job.sl1"), layer_format("", "job.sl1"), test::planes_of(layers),
+                     info_of(layers), options);
     } catch (const Error& error) {
         EXPECT_EQ(error.kind(), ErrorKind::usage);
         EXPECT_TRUE(folder.entries().empty());
@@ -79,8 +81,8 @@ TEST(Sl1, ShowsItsImagesUpright) {
     // x runs up the picture and y to the right; the display has 2560 rows and 1440 columns.
     const TemporaryFolder folder;
     const LayerStack layers = stack_of({0.1});
-    write_layers(folder.file("job.sl1"), layer_format("", "job.sl1"), layers, info_of(layers),
-                 {.image = {.raster = {.antialias = 1}}});
+    write_layers(folder.file("job.sl1"), layer_format("", "job.sl1"), test::planes_of(layers),
+                 info_of(layers), {.image = {.raster = {.antialias = 1}}});
     const PngFile image = stored_image(file_bytes(folder.file("job.sl1")), "job00000.png");
     ASSERT_EQ(image.error, "");
     ASSERT_EQ(image.width, 1440U);
@@ -100,7 +102,8 @@ TEST(Sl1, ShowsItsImagesUpright) {
 TEST(Sl1, HasImagesOfThePart) {
     const TemporaryFolder folder;
     const LayerStack layers = stack_of({1, 1, 1, 1, 1, 1});
-    write_layers(folder.file("job.sl1"), layer_format("", "job.sl1"), layers, info_of(layers));
+    write_layers(folder.file("job.sl1"), layer_format("", "job.sl1"), test::planes_of(layers),
+                 info_of(layers));
     const std::string archive = file_bytes(folder.file("job.sl1"));
     for (const std::uint32_t width : {400U, 800U}) {
         const std::uint32_t height = width == 400 ? 400 : 480;
@@ -122,7 +125,7 @@ TEST(Sl1, HasImagesOfThePart) {
 TEST(Sl1, HasTheSameBytesInWhateverOrderLayersAreMade) {
     const TemporaryFolder folder;
     const LayerStack layers = stack_of({1, 1, 1, 1, 1, 1});
-    write_layers(folder.file("a.sl1"), layer_format("", "a.sl1"), layers, info_of(layers));
+    write_layers(folder.file("a.sl1"), layer_format("", "a.sl1"), test::planes_of(layers), info_of(layers));
     std::filesystem::create_directory(folder.path() / "other"); // the pictures are named after the file
     const std::string other = (folder.path() / "other" / "a.sl1").string();
     const auto writer = open_layer_writer(other, layer_format("", other), info_of(layers));

@@ -1,6 +1,7 @@
 #include "lamella/write/layer_writer.hpp"
 
 #include "container/zip_reader.hpp"
+#include "fixtures/layers.hpp"
 #include "sample_layers.hpp"
 #include "temporary_folder.hpp"
 
@@ -43,7 +44,7 @@ TEST(Toolpath3mf, IdentifiersAreHashesOfTheWholeHeader) {
         header += " \"" + label + "\" 0 0 0 10 10 1";
     }
     write_layers(folder.file("out"), layer_format("3mf-toolpath", ""),
-                 std::vector<LayerStack>(info.parts.size(), stack), info);
+                 test::planes_of(std::vector<LayerStack>(info.parts.size(), stack)), info);
     const ZipReader zip(open_bytes(folder.file("out")), 0);
     const std::string model(zip.read(*zip.find("3D/3dmodel.model")).text());
     const std::string all = identifier("toolpath " + header);
@@ -60,8 +61,8 @@ TEST(Toolpath3mf, JobsOfOtherParametersHaveOtherIdentifiers) {
         LayerFileInfo info = info_of(stack);
         info.parts.front().exposure = Exposure{};
         info.parts.front().exposure->parameters.power_w = power_w;
-        write_layers(folder.file("out"), layer_format("3mf-toolpath", ""), std::vector<LayerStack>{stack},
-                     info);
+        write_layers(folder.file("out"), layer_format("3mf-toolpath", ""),
+                     test::planes_of(std::vector<LayerStack>{stack}), info);
         const ZipReader zip(open_bytes(folder.file("out")), 0);
         const std::string model(zip.read(*zip.find("3D/3dmodel.model")).text());
         constexpr std::size_t length = 36;
@@ -88,8 +89,8 @@ TEST(Toolpath3mf, JobsOfOtherContoursHaveOtherIdentifiers) {
         }
         LayerFileInfo info = info_of(stack);
         info.box = {{0, 0, 0}, {10, 10, 1}};
-        write_layers(folder.file("out"), layer_format("3mf-toolpath", ""), std::vector<LayerStack>{stack},
-                     info);
+        write_layers(folder.file("out"), layer_format("3mf-toolpath", ""),
+                     test::planes_of(std::vector<LayerStack>{stack}), info);
         const ZipReader zip(open_bytes(folder.file("out")), 0);
         const std::string model(zip.read(*zip.find("3D/3dmodel.model")).text());
         constexpr std::string_view before = "toolpathresource id=\"1\" uuid=\"";
@@ -107,8 +108,8 @@ TEST(Toolpath3mf, LayersListTheirPartsOnly) {
     LayerFileInfo info = info_of(both);
     info.parts.push_back(info.parts.front());
     info.parts.back().label = "second";
-    write_layers(folder.file("out"), layer_format("3mf-toolpath", ""), std::vector<LayerStack>{both, second},
-                 info);
+    write_layers(folder.file("out"), layer_format("3mf-toolpath", ""),
+                 test::planes_of(std::vector<LayerStack>{both, second}), info);
     const ZipReader zip(open_bytes(folder.file("out")), 0);
     const auto layer = [&](int number) {
         return std::string(zip.read(*zip.find(fmt::format("Toolpath/Layers/layer{:05}.xml", number))).text());

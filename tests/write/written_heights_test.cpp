@@ -1,6 +1,7 @@
 #include "lamella/write/layer_writer.hpp"
 
 #include "fixtures/expect_error.hpp"
+#include "fixtures/layers.hpp"
 #include "plain_formats.hpp"
 #include "sample_layers.hpp"
 #include "temporary_folder.hpp"
@@ -22,7 +23,8 @@ TEST(LayerWriter, RefusesPlanesThatIltReadersWouldTakeForOne) {
         layers[1].top = layers[0].top + thickness;
         layers[1].z = layers[0].top + thickness / 2;
         const auto write = [&] {
-            write_layers(folder.file("a.ilt"), layer_format("ilt", ""), layers, info_of(layers));
+            write_layers(folder.file("a.ilt"), layer_format("ilt", ""), test::planes_of(layers),
+                         info_of(layers));
         };
         if (fits)
             EXPECT_NO_THROW(write());
@@ -40,7 +42,8 @@ TEST(LayerWriter, RefusesHeightsThatTheFileCannotDistinguishOrHold) {
             layers[0].bottom = bottom;
             layers[0].top = layers[0].z = bottom + thickness;
             return error_of(ErrorKind::usage, [&] {
-                write_layers(folder.file("out"), *format, layers, info_of(layers), options_for_any());
+                write_layers(folder.file("out"), *format, test::planes_of(layers), info_of(layers),
+                             options_for_any());
             });
         };
         if (is_one_of(format->name, {"cli", "slc", "ilt", "ovf"})) {

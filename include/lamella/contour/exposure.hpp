@@ -54,30 +54,6 @@ struct ParameterSet {
 /// Returns parameters for vectors of unknown parameters: no name, and all values 0.
 [[nodiscard]] ParameterSet unknown_parameters();
 
-/// The scan vectors of one plane, exposure by exposure. A machine executes the rings of an exposure, then its
-/// chains, then its hatch lines, each in the given order. So the polylines are not in normal form.
-struct ScanVectors {
-    std::vector<Layer> polylines; ///< of each exposure, with the heights of the plane
-    std::vector<PointArray>
-        hatches; ///< of each exposure: two points for each line, first point to second point
-
-    [[nodiscard]] std::size_t exposures() const noexcept { return polylines.size(); }
-    /// Appends an exposure.
-    void add(Layer lines, PointArray hatch_lines);
-    /// Appends all exposures of other vectors of the same plane.
-    void append(ScanVectors other);
-};
-
-/// Throws as `check(const Layer&)` does, and Error{usage} if an end of a hatch line is missing, or the hatch
-/// lines of an exposure. O(points).
-void check(const ScanVectors& vectors);
-
-/// Returns a 64-bit hash of the vectors in their order. It is the `stack_hash` of the hashes of the
-/// exposures. The hash of an exposure is XXH3 (64 bits, seed 0) over the bytes that `content_hash(const
-/// Layer&)` hashes, followed by x and y of the ends of its hatch lines. Heights are ignored. O(n), at the
-/// speed of memory.
-[[nodiscard]] std::uint64_t content_hash(const ScanVectors& vectors) noexcept;
-
 /// Properties of the vectors of one part that a machine executes together, with the same parameters.
 struct Exposure {
     std::string part = "part"; ///< label of the part

@@ -97,6 +97,42 @@ void check(const Layer& layer);
 /// Layers in ascending z.
 using LayerStack = std::vector<Layer>;
 
+/// The contents of one plane of a stack: contours and hatch lines of each part.
+///
+/// If a part consists of scan vectors, each of its exposures counts as a part, and the order is that of
+/// execution: a machine executes the rings of an exposure, then its chains, then its hatch lines, each in the
+/// given order. Such polylines are not in normal form.
+struct Plane {
+    std::vector<Layer> polylines;    ///< of each part, with the heights of the plane
+    std::vector<PointArray> hatches; ///< of each part: two points for each line, first point to second point
+
+    Plane() = default;
+    /// A plane of one part without hatch lines. It shares the points of the layer.
+    Plane(Layer layer) { add(std::move(layer)); } // NOLINT(google-explicit-constructor): a layer is a plane
+    /// A plane of parts without hatch lines.
+    explicit Plane(std::vector<Layer> layers) : polylines(std::move(layers)), hatches(polylines.size()) {}
+
+    /// A plane with as many hatches as layers; empty ones for parts without hatch lines.
+    Plane(std::vector<Layer> layers, std::vector<PointArray> hatch_lines)
+        : polylines(std::move(layers)), hatches(std::move(hatch_lines)) {}
+
+    /// Returns the number of parts.
+    [[nodiscard]] std::size_t parts() const noexcept { return polylines.size(); }
+    /// Appends a part.
+    void add(Layer lines, PointArray hatch_lines = {});
+    /// Appends all parts of another plane at the same height.
+    void append(Plane other);
+};
+
+/// Throws as `check(const Layer&)` does, and Error{usage} if an end of a hatch line is missing, the hatch
+/// lines of a part, or if two parts have different heights or indices. O(points).
+void check(const Plane& plane);
+
+/// Returns a 64-bit hash of the contents in their order. It is the `stack_hash` of the hashes of the parts.
+/// The hash of a part is XXH3 (64 bits, seed 0) over the bytes that `content_hash(const Layer&)` hashes,
+/// followed by x and y of the ends of its hatch lines. Heights are ignored. O(n), at the speed of memory.
+[[nodiscard]] std::uint64_t content_hash(const Plane& plane) noexcept;
+
 /// Collects contours in any order and makes a layer of them (see `normal_form`).
 class LayerBuilder {
   public:

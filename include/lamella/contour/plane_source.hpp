@@ -56,8 +56,8 @@ struct LayerPart {
 };
 
 /// Takes a plane of a source, at a position; see PlaneSource::run.
-using PlaneSink = std::function<Commit(std::size_t position, ScanVectors plane)>;
-using PlaneVisitor = std::function<void(std::size_t position, ScanVectors plane, unsigned worker)>;
+using PlaneSink = std::function<Commit(std::size_t position, Plane plane)>;
+using PlaneVisitor = std::function<void(std::size_t position, Plane plane, unsigned worker)>;
 
 /// Planes whose contents are made when they are needed.
 struct PlaneSource {
@@ -78,11 +78,11 @@ struct PlaneSource {
 
     /// Makes the contours and hatch lines of the plane at this position, for each part; heights may be
     /// missing. May be called by any number of threads at once.
-    std::function<ScanVectors(std::size_t position)> make = {};
+    std::function<Plane(std::size_t position)> make = {};
 
     /// Returns the contours and hatch lines of all parts on a plane, with its heights. O(contours) if all
     /// planes are in memory, otherwise the time for making them. May be called by any number of threads.
-    [[nodiscard]] ScanVectors plane(std::size_t position) const;
+    [[nodiscard]] Plane plane(std::size_t position) const;
 
     /// Passes all planes to `sink`, on all threads, and calls the commits that it returns in ascending order
     /// (see Commit). Each thread holds one plane. Reports the progress of this stage. Throws the errors of
@@ -105,6 +105,12 @@ struct PlaneSource {
     /// Returns `execution` with at most as many threads as planes fit into `spare_bytes`, and at least one.
     [[nodiscard]] Execution for_planes(const Execution& execution) const;
 };
+
+/// Returns a source of planes in memory, which have these parts; boxes and numbers of hatch lines are
+/// computed. O(points), parallel. Throws Error{usage} if a plane has another number of parts, or does not
+/// pass `check`.
+[[nodiscard]] PlaneSource source_of(std::vector<Plane> planes, std::vector<PartInfo> parts,
+                                    std::string path = {}, const Execution& execution = {.threads = 1});
 
 /// Returns a source of layers in memory. `path` is a name for errors. O(points), parallel. Throws
 /// Error{usage} if the parts do not have the same planes (number, indices and heights), if a part has hatch

@@ -47,7 +47,7 @@ class LayerFindingSearch {
     /// time, but only one of them for each plane. Throws the errors of inverted_rings.
     void look_at(std::size_t position, std::size_t part, const Layer& layer);
     /// Searches, on one plane of a source, the parts that are not scan vectors.
-    void look_at(std::size_t position, const PlaneSource& source, const ScanVectors& plane);
+    void look_at(std::size_t position, const PlaneSource& source, const Plane& plane);
     /// Returns the findings, as those of file 0; without labels of parts.
     [[nodiscard]] Findings findings() const { return log_.sums(planes_); }
 

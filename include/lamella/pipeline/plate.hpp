@@ -129,10 +129,9 @@ SliceReport slice_to(const LayerSink& sink, const Plate& plate, const Plan& plan
 /// are unknown. Throws the errors of `Slicer` and Slicer::slice. The plate is not needed afterwards.
 [[nodiscard]] PlaneSource planes_of(const Plate& plate, const Plan& plan, const Execution& execution = {});
 
-/// Like LayerSink, but for all layers of one plane: one for each of Plate::parts, then one for each of
-/// Plate::negatives.
+/// Like LayerSink, but for all bodies on one plane: each of Plate::parts, then each of Plate::negatives.
 struct PlateSink {
-    std::function<Commit(std::span<const Layer> bodies)> prepare;
+    std::function<Commit(Plane bodies)> prepare;
 };
 
 /// Slices all parts together, and passes on the layers of each body. Sets only the times and the
@@ -149,9 +148,9 @@ struct PlateMaterial {
 };
 
 /// Fills each body where it has material, subtracts negative volumes, and applies the other steps to each
-/// part. `bodies` are the argument of PlateSink::prepare, `negatives` are those of the plate. Layers that
-/// neither steps nor negative volumes change are returned bit for bit. `names` are the names of the parts for
-/// error messages, or empty. Throws the errors of the steps.
+/// part. `bodies` are the layers that PlateSink::prepare takes, `negatives` are those of the plate. Layers
+/// that neither steps nor negative volumes change are returned bit for bit. `names` are the names of the
+/// parts for error messages, or empty. Throws the errors of the steps.
 [[nodiscard]] PlateMaterial material_of(std::span<const Layer> bodies,
                                         std::span<const PlateNegative> negatives,
                                         const LayerSteps& steps = {}, const LayerLimits& limits = {},

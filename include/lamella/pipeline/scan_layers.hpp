@@ -1,6 +1,6 @@
 #pragma once
 
-// Scan vectors of existing layers, written to a file.
+// Scan vectors of existing layers, written to a file or kept in memory.
 
 #include "lamella/contour/plane_source.hpp"
 #include "lamella/core/execution.hpp"
@@ -30,6 +30,17 @@ namespace lamella {
                                      const PlaneSource& source, const ScanStrategy& strategy,
                                      const LayerWriteOptions& options = {}, const Execution& execution = {},
                                      std::uint64_t max_memory = 0);
+
+/// The scan vectors of layers, and the figures that `scan_layers` returns.
+struct ScannedLayers {
+    PlaneSource vectors; ///< one part for each exposure, as in `with_exposures`
+    FileResult figures;
+};
+
+/// Computes the scan vectors of the layers of all parts, like `scan_layers`, and keeps those of all planes in
+/// memory. Throws the errors of PlaneSource::plane and `scan`.
+[[nodiscard]] ScannedLayers scan_layers(const PlaneSource& source, const ScanStrategy& strategy,
+                                        const Execution& execution = {}, std::uint64_t max_memory = 0);
 
 } // namespace lamella
 LAMELLA_API_END

@@ -65,7 +65,7 @@ struct ScanOptions {
 /// The scan vectors of one layer of a part, for each of the strategy's `exposures`.
 struct ScannedLayer {
     /// Contours are rings in scanning order, each from its start point.
-    ScanVectors vectors;
+    Plane vectors;
     /// Area that no vector reaches, mm^2, for each exposure: between a contour and the previous one, or
     /// within all contours in the region of a hatch. Vectors are those of the file (`ScanOptions::written`).
     /// A contour, and a line in the middle of a wall, reaches the beam's offset to either side; if there are

@@ -162,17 +162,10 @@ class LayerWriter {
     LayerWriter& operator=(const LayerWriter&) = delete;
     virtual ~LayerWriter() = default;
 
-    /// Formats one plane. `parts` has one layer for each of LayerFileInfo::parts, in this order. All layers
-    /// must have the same index, z, bottom and top; a layer is empty if the plane misses the part. Formats
-    /// that cannot distinguish parts merge them. The commit writes the result.
-    [[nodiscard]] virtual Commit prepare(std::span<const Layer> parts) = 0;
-
-    /// Formats one plane of scan vectors, or of contours and hatch lines. `vectors` has one exposure for each
-    /// of LayerFileInfo::parts.
-    [[nodiscard]] virtual Commit prepare(const ScanVectors& vectors) = 0;
-
-    /// Formats one plane of a file with a single part.
-    [[nodiscard]] Commit prepare(const Layer& layer) { return prepare(std::span(&layer, 1)); }
+    /// Formats one plane, which has the parts of LayerFileInfo::parts, in this order; the layer of a part
+    /// that the plane misses is empty. Formats that cannot distinguish parts merge them. The commit writes
+    /// the result.
+    [[nodiscard]] virtual Commit prepare(const Plane& plane) = 0;
 
     /// Ends the file and gives it its name. Must be called once, after the last layer. Throws Error{output}
     /// if anything could not be written; in this case no file is left behind.
@@ -202,12 +195,9 @@ class LayerWriter {
                                                              const LayerFileInfo& info,
                                                              const LayerWriteOptions& options = {});
 
-/// Formats the next `planes` planes of the file on all threads and writes them in order. `plane_of(i)`
-/// returns the content of plane i (see LayerWriter::prepare); it may be called for several planes at once.
-/// Each thread holds one plane in memory. Throws the errors of the writer and of `plane_of`, and
-/// Error{cancelled}.
-void write_planes(LayerWriter& writer, std::size_t planes,
-                  const std::function<ScanVectors(std::size_t)>& plane_of, const Execution& execution = {});
+/// Formats the next planes of the file on all threads, and writes them in order. Throws the errors of the
+/// writer, and Error{cancelled}.
+void write_planes(LayerWriter& writer, std::span<const Plane> planes, const Execution& execution = {});
 
 /// Writes the stack of a single part, in the format given by the extension of the path, and returns
 /// LayerWriter::warnings. The header is derived from the layers: its box is that of their contours, and its
@@ -215,21 +205,11 @@ void write_planes(LayerWriter& writer, std::size_t planes,
 std::vector<std::string> write_layers(const std::string& path, std::span<const Layer> layers,
                                       const LayerWriteOptions& options = {}, const Execution& execution = {});
 
-/// Writes the stack of a single part in any format, with a header supplied by the caller. Uses all threads.
-/// To write layers without holding all of them in memory, use LayerWriter::prepare as the sink of `slice_to`.
+/// Writes planes in any format, with a header supplied by the caller. Uses all threads. To write planes
+/// without holding all of them in memory, use LayerWriter::prepare as the sink of `slice_to`, or of
+/// PlaneSource::run.
 std::vector<std::string> write_layers(const std::string& path, const LayerFormat& format,
-                                      std::span<const Layer> layers, const LayerFileInfo& info,
-                                      const LayerWriteOptions& options = {}, const Execution& execution = {});
-
-/// Writes scan vectors, or contours and hatch lines; `planes` has an entry for each plane.
-std::vector<std::string> write_layers(const std::string& path, const LayerFormat& format,
-                                      std::span<const ScanVectors> planes, const LayerFileInfo& info,
-                                      const LayerWriteOptions& options = {}, const Execution& execution = {});
-
-/// Writes the stacks of several parts, which must have the same planes. Throws Error{usage} that names the
-/// first layer whose index or heights differ from those of the first part.
-std::vector<std::string> write_layers(const std::string& path, const LayerFormat& format,
-                                      std::span<const LayerStack> parts, const LayerFileInfo& info,
+                                      std::span<const Plane> planes, const LayerFileInfo& info,
                                       const LayerWriteOptions& options = {}, const Execution& execution = {});
 
 } // namespace lamella

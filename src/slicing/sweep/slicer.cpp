@@ -286,7 +286,7 @@ PlaneSource Slicer::slice(const Plan& plan) const {
     PlaneSource source = planned_source(plan);
     source.parts = {{.label = {}, .box = bounding_box(prepared_->mesh, {.threads = 1})}};
     source.make = [prepared = prepared_, planes = source.planes](std::size_t position) {
-        ScanVectors plane;
+        Plane plane;
         plane.add(prepared->level->section(planes[position].z + 0.0), {});
         return plane;
     };
