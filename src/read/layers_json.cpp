@@ -181,7 +181,11 @@ class JsonLayers {
     [[nodiscard]] JsonPiece parse(std::size_t begin, std::size_t limit, const Reading& reading) const {
         return JsonPieceReader(JsonText(bytes_, name_, begin, depth_), parts_, reading).read(limit);
     }
-    [[nodiscard]] static RawLayer layer(JsonPiece&& piece) { return only_layer(std::move(piece.layers)); }
+    [[nodiscard]] static RawLayer layer(JsonPiece&& piece) {
+        if (piece.error) // such as a limit
+            std::rethrow_exception(piece.error);
+        return only_layer(std::move(piece.layers));
+    }
 
     void append(JsonPiece&& piece, ReadLimits& limits) {
         for (std::size_t i = 0; i < piece.layers.size(); ++i) {
