@@ -207,8 +207,7 @@ LayerFile layers_of(CommonLayerContent content, std::span<const double> bottoms,
         bottom -= n > 1 ? layers[1].z - first : std::max(0.0, first - content.lowest);
     }
     check_part_planes(file, layers.size(), content.bytes);
-    Executor executor(execution);
-    add_layers_by_tops(file, layers, bottom, limits, executor, std::move(content.parse));
+    add_layers_by_tops(file, layers, bottom, limits, execution, std::move(content.parse));
     return std::move(file);
 }
 

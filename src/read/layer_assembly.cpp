@@ -6,6 +6,7 @@
 #include "container/text_position.hpp"
 #include "contour/plane_sums.hpp"
 #include "core/counted.hpp"
+#include "core/executor.hpp"
 #include "core/let_go.hpp"
 
 #include <fmt/format.h>
@@ -35,12 +36,12 @@ bool is_in_order(const RawLayer& raw, const LayerFile& file) {
 }
 
 /// Warns if the order of vectors changes, because machines execute them in this order.
-void report_changed_order(std::span<const RawLayer> layers, LayerFile& file, Executor& executor) {
+void report_changed_order(std::span<const RawLayer> layers, LayerFile& file, const Execution& execution) {
     if (std::none_of(file.parts.begin(), file.parts.end(),
                      [](const PartInfo& part) { return part.exposure.has_value(); }))
         return;
     std::vector<char> in_order(layers.size());
-    executor.for_chunks(layers.size(), 1, [&](std::uint64_t i, std::uint64_t, unsigned) {
+    Executor(execution).for_chunks(layers.size(), 1, [&](std::uint64_t i, std::uint64_t, unsigned) {
         in_order[i] = is_in_order(layers[i], file) ? 1 : 0;
     });
     std::size_t changed = 0;
@@ -217,6 +218,18 @@ void append_to(const Findings& found, std::vector<std::string>& warnings) {
         warnings.push_back(std::move(text));
 }
 
+PartInfo VectorParts::of(std::int64_t part, const std::string& label, std::optional<Exposure> exposure) {
+    const auto [known, is_new] = known_.try_emplace(part);
+    if (is_new)
+        known->second = names.of(labels.of(label));
+    PartInfo info{.label = known->second, .box = {}, .exposure = std::move(exposure)};
+    if (info.exposure) {
+        info.exposure->part = info.label;
+        info.label = info.exposure->label();
+    }
+    return info;
+}
+
 bool RawLayer::keep_contour(bool closed, std::uint32_t part) {
     const std::size_t first = contour_begin();
     const auto contour = points.begin() + static_cast<std::ptrdiff_t>(first);
@@ -278,8 +291,8 @@ void RawLayer::renumber(std::span<const std::uint32_t> numbers) {
     renumber_all(runs);
 }
 
-void add_layers(LayerFile& file, std::span<const PlacedLayer> planes, ReadLimits& limits, Executor& executor,
-                ParseLayer parse) {
+void add_layers(LayerFile& file, std::span<const PlacedLayer> planes, ReadLimits& limits,
+                const Execution& execution, ParseLayer parse) {
     const std::size_t parts = limits.in_memory() ? file.parts.size() : 1;
     limits.add_bytes(planes.size() * (parts * (sizeof(Layer) + of_empty_layer + sizeof(PointArray)) +
                                       sizeof(Layer) + sizeof(PlaneContent)),
@@ -310,6 +323,7 @@ void add_layers(LayerFile& file, std::span<const PlacedLayer> planes, ReadLimits
         return;
     }
     std::vector<Plane> kept(planes.size());
+    Executor executor(execution);
     executor.for_chunks(planes.size(), 1, [&](std::uint64_t i, std::uint64_t, unsigned) {
         kept[i] = make_layers(planes[i], exposed, limits, [&] {
             const std::string& location = planes[i].raw->location;
@@ -321,8 +335,8 @@ void add_layers(LayerFile& file, std::span<const PlacedLayer> planes, ReadLimits
 }
 
 void add_layers_by_tops(LayerFile& file, std::span<RawLayer> layers, double bottom, ReadLimits& limits,
-                        Executor& executor, ParseLayer parse) {
-    report_changed_order(layers, file, executor);
+                        const Execution& execution, ParseLayer parse) {
+    report_changed_order(layers, file, execution);
     std::vector<PlacedLayer> planes;
     planes.reserve(layers.size());
     for (RawLayer& raw : layers) {
@@ -330,12 +344,12 @@ void add_layers_by_tops(LayerFile& file, std::span<RawLayer> layers, double bott
         planes.push_back({&raw, planes.size(), bottom + (top - bottom) / 2, bottom, top});
         bottom = top;
     }
-    add_layers(file, planes, limits, executor, std::move(parse));
+    add_layers(file, planes, limits, execution, std::move(parse));
 }
 
 void add_layers_by_bottoms(LayerFile& file, std::span<RawLayer> layers, double top, ReadLimits& limits,
-                           Executor& executor, ParseLayer parse) {
-    report_changed_order(layers, file, executor);
+                           const Execution& execution, ParseLayer parse) {
+    report_changed_order(layers, file, execution);
     std::vector<PlacedLayer> planes;
     planes.reserve(layers.size());
     for (std::size_t i = 0; i < layers.size(); ++i) {
@@ -343,7 +357,7 @@ void add_layers_by_bottoms(LayerFile& file, std::span<RawLayer> layers, double t
         const double end = i + 1 < layers.size() ? layers[i + 1].z : top;
         planes.push_back({&layers[i], i, bottom + (end - bottom) / 2, bottom, end});
     }
-    add_layers(file, planes, limits, executor, std::move(parse));
+    add_layers(file, planes, limits, execution, std::move(parse));
 }
 
 void check_part_planes(const LayerFile& file, std::uint64_t planes, std::uint64_t bytes) {

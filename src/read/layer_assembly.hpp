@@ -2,14 +2,15 @@
 
 // Makes layers of parts from contours at heights, as slice files contain them.
 
+#include "lamella/contour/exposure.hpp"
 #include "lamella/contour/layer.hpp"
+#include "lamella/core/execution.hpp"
 #include "lamella/core/point.hpp"
 #include "lamella/findings/findings.hpp"
 #include "lamella/read/layer_file.hpp"
 
 #include "core/counted.hpp"
 #include "core/distinct_names.hpp"
-#include "core/executor.hpp"
 #include "read/read_limits.hpp"
 
 #include <fmt/format.h>
@@ -21,6 +22,7 @@
 #include <functional>
 #include <iterator>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -225,16 +227,44 @@ void end_layers(std::vector<Raw>& layers, ReadLimits& limits) {
         layer.end_layer(limits);
 }
 
-/// Parses the layer that begins at an offset again, with indices of parts in the file. May be called by any
-/// number of threads at once.
-using ParseLayer = std::function<RawLayer(std::size_t begin, ReadLimits& limits)>;
-
 /// Returns the only layer that was parsed again.
 template <class Raw>
 [[nodiscard]] RawLayer only_layer(std::vector<Raw>&& layers) {
     assert(layers.size() == 1);
     return std::move(layers.front());
 }
+
+/// Consecutive layers of a file whose parts have keys.
+template <class Key>
+struct KeyedLayers {
+    explicit KeyedLayers(ReadLimits& limits) : parts(limits) {}
+
+    std::vector<RawLayer> layers;
+    PartNumbers<Key> parts;
+    Findings found;
+    std::size_t end = 0; ///< where the next layer begins
+
+    /// Appends the layers that follow.
+    void append(KeyedLayers&& piece, ReadLimits& limits) {
+        parts.add(
+            piece.parts, piece.layers, [](const Key& key) { return key; },
+            [&] { return std::string_view(piece.layers.front().location); });
+        found.add(piece.found);
+        append_layers(layers, std::move(piece.layers), limits);
+        end = piece.end;
+    }
+
+    /// Returns the only layer, which was parsed again. The file has parts with these keys.
+    [[nodiscard]] RawLayer only(const std::vector<Key>& keys) && {
+        RawLayer layer = only_layer(std::move(layers));
+        parts.put(layer, keys);
+        return layer;
+    }
+};
+
+/// Parses the layer that begins at an offset again, with indices of parts in the file. May be called by any
+/// number of threads at once.
+using ParseLayer = std::function<RawLayer(std::size_t begin, ReadLimits& limits)>;
 
 /// Returns a file of which only this is known.
 [[nodiscard]] LayerFile layer_file(const std::string& name, std::string_view format, double units_mm = 0);
@@ -245,6 +275,19 @@ template <class Raw>
 
 /// Warns of names of parts that were changed.
 void append_to(const DistinctNames& names, std::vector<std::string>& warnings);
+
+/// Makes the parts of scan vectors. Those of one part of a machine's file have its label, which is unique.
+class VectorParts {
+  public:
+    /// `part` identifies the part of the file.
+    [[nodiscard]] PartInfo of(std::int64_t part, const std::string& label, std::optional<Exposure> exposure);
+
+    ReadLabels labels;
+    DistinctNames names;
+
+  private:
+    std::map<std::int64_t, std::string> known_; ///< labels
+};
 
 /// Number of bytes that an empty layer takes in addition to its struct: the list of offsets, and the owner of
 /// the points.
@@ -271,17 +314,17 @@ struct PlacedLayer {
 /// If planes are kept in memory, makes them on all threads and frees the contours and hatches of each
 /// RawLayer; in the limits, the layers take their place. Otherwise planes are parsed again when they are
 /// needed; the limits must live as long.
-void add_layers(LayerFile& file, std::span<const PlacedLayer> planes, ReadLimits& limits, Executor& executor,
-                ParseLayer parse);
+void add_layers(LayerFile& file, std::span<const PlacedLayer> planes, ReadLimits& limits,
+                const Execution& execution, ParseLayer parse);
 
 /// Adds layers whose heights are their tops. Each layer extends down to the top of the one before, the first
 /// one to `bottom`. Cuts are assumed to be half-way up. Warns of layers in which the order of scan vectors
 /// changes.
 void add_layers_by_tops(LayerFile& file, std::span<RawLayer> layers, double bottom, ReadLimits& limits,
-                        Executor& executor, ParseLayer parse);
+                        const Execution& execution, ParseLayer parse);
 /// Adds layers whose heights are their bottoms in the same way; the last one extends up to `top`.
 void add_layers_by_bottoms(LayerFile& file, std::span<RawLayer> layers, double top, ReadLimits& limits,
-                           Executor& executor, ParseLayer parse);
+                           const Execution& execution, ParseLayer parse);
 
 /// Throws Error{input} if the number of parts times the number of planes is implausibly large for the size of
 /// the file, because even empty layers take memory. A few millions are accepted for any size, because a stack

@@ -258,7 +258,7 @@ class SvgReader {
     }
 
     /// `parse` is as in add_layers.
-    void finish(LayerFile& file, std::uint64_t bytes, Executor& executor, ParseLayer parse) {
+    void finish(LayerFile& file, std::uint64_t bytes, const Execution& execution, ParseLayer parse) {
         if (groups_.empty())
             throw Error(ErrorKind::input,
                         fmt::format("{}: found no layer; a layered SVG holds one <g> with slic3r:z for "
@@ -276,7 +276,7 @@ class SvgReader {
         planes.reserve(groups_.size());
         for (Group& group : groups_)
             planes.push_back({&group, planes.size(), group.cut, group.bottom, group.top});
-        add_layers(file, planes, limits_, executor, std::move(parse));
+        add_layers(file, planes, limits_, execution, std::move(parse));
     }
 
   private:
@@ -622,7 +622,7 @@ class SvgDocument {
   public:
     SvgDocument(std::string_view bytes, const std::string& name, ReadLimits& limits,
                 const Execution& execution)
-        : bytes_(bytes), name_(name), limits_(limits), executor_(execution),
+        : bytes_(bytes), name_(name), limits_(limits), execution_(execution), executor_(execution),
           progress_(execution, Stage::read, bytes.size()), reader_(name, limits), in_pieces_(is_utf8(bytes)) {
     }
 
@@ -645,7 +645,7 @@ class SvgDocument {
             read_layers(cursor);
         };
         parse_xml(bytes_, name_, handlers);
-        reader_.finish(file, bytes_.size(), executor_,
+        reader_.finish(file, bytes_.size(), execution_,
                        [bytes = bytes_, &name = name_, parent = reader_.parent(),
                         around = std::make_shared<SvgReader>(reader_.of_layers(1, limits_))](
                            std::size_t begin, ReadLimits& limits) {
@@ -729,6 +729,7 @@ class SvgDocument {
     std::string_view bytes_;
     const std::string& name_;
     ReadLimits& limits_;
+    const Execution& execution_;
     Executor executor_;
     ProgressMeter progress_;
     SvgReader reader_;

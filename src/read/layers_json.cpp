@@ -264,8 +264,7 @@ class LayersJsonReader {
         for (JsonLayer& layer : layers)
             planes.push_back(
                 {&layer, static_cast<std::uint64_t>(*layer.index), layer.z, layer.bottom, layer.top});
-        Executor executor(execution_);
-        add_layers(file_, planes, limits_, executor, parsing_again<JsonLayers>(layers_));
+        add_layers(file_, planes, limits_, execution_, parsing_again<JsonLayers>(layers_));
         append_to(layers_->found(), file_.warnings);
     }
 

@@ -4,10 +4,8 @@
 #include "container/utf8.hpp"
 #include "core/executor.hpp"
 #include "core/farthest.hpp"
-#include "read/layer_assembly.hpp"
-#include "read/layer_pieces.hpp"
 #include "read/layer_readers.hpp"
-#include "read/read_limits.hpp"
+#include "read/slice_engine.hpp"
 
 #include <fmt/format.h>
 
@@ -16,6 +14,7 @@
 #include <charconv>
 #include <cstring>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -197,13 +196,190 @@ class Array {
     std::size_t begin_ = 0;
 };
 
+/// The arrays that describe contours, which share the memory of the archive.
+struct NpzContours {
+    Array points;
+    Array offsets;
+    Array closed;
+    Array layer;
+    Array part;
+};
+
+/// The arrays that describe hatch lines.
+struct NpzHatches {
+    Array lines;
+    Array layer;
+    Array part;
+};
+
+struct NumberedLayer : RawLayer {
+    std::uint64_t number = 0;
+};
+
+/// The contours and, numbered behind them, the hatch lines. They need not be in the order of their layers:
+/// in a piece, each run of contours or of hatch lines of one layer is a layer.
+class NpzVectors {
+  public:
+    struct Piece {
+        std::vector<NumberedLayer> layers = {};
+        Findings found = {};
+        std::size_t end = 0; ///< number of the next contour or hatch line
+    };
+
+    NpzVectors(NpzContours contours, std::optional<NpzHatches> hatches, std::uint64_t layers,
+               std::uint64_t parts, ReadLimits& limits)
+        : contours_(std::move(contours)), hatches_(std::move(hatches)),
+          first_hatch_(static_cast<std::size_t>(contours_.offsets.size() - 1)), layers_(layers),
+          parts_(parts) {
+        limits.make_room(all_, layers, [] { return std::string_view("array 'z'"); });
+        all_.resize(layers);
+        for (RawLayer& empty : all_)
+            empty.begin = nothing;
+        static_cast<void>(contours_.offsets.whole(0, 0));
+    }
+
+    /// Returns the size of the vectors in memory.
+    [[nodiscard]] std::uint64_t bytes() const {
+        return (contours_.points.size() + 2 * (end() - first_hatch_)) * sizeof(Point2);
+    }
+
+    /// Divides the vectors where the layer changes, as far as the arrays are sound.
+    [[nodiscard]] PieceBegins begins(Executor& /*executor*/) const {
+        PieceBegins begins{0};
+        try {
+            std::uint64_t points = 0; // of the last piece
+            for (std::size_t i = 1; i < end(); ++i) {
+                points += i <= first_hatch_ ? offset(i) - offset(i - 1) : 2;
+                if (points < layer_piece_bytes / sizeof(Point2) || !begins_run(i))
+                    continue;
+                begins.push_back(i);
+                points = 0;
+            }
+        } catch (const Error&) { // reading the contours reports it
+        }
+        return begins;
+    }
+    [[nodiscard]] std::size_t end() const {
+        return first_hatch_ + (hatches_ ? static_cast<std::size_t>(hatches_->lines.size()) : 0);
+    }
+
+    [[nodiscard]] Piece parse(std::size_t begin, std::size_t limit, const Reading& reading) const {
+        reading.executor.check_cancelled();
+        Piece piece;
+        piece.end = begin;
+        for (std::size_t& i = piece.end; i < limit || (i < end() && !begins_run(i)); ++i)
+            if (i < first_hatch_)
+                add_contour(i, piece, reading);
+            else
+                add_hatch(i, piece, reading);
+        for (const RawLayer& layer : piece.layers)
+            reading.progress.add((layer.points.size() + layer.hatches.size()) * sizeof(Point2));
+        return piece;
+    }
+    [[nodiscard]] static RawLayer layer(Piece&& piece) {
+        return piece.layers.empty() ? RawLayer() : only_layer(std::move(piece.layers));
+    }
+
+    void append(Piece&& piece, ReadLimits& limits) {
+        found_.add(piece.found);
+        for (NumberedLayer& layer : piece.layers)
+            if (RawLayer& into = all_[layer.number]; into.begin == nothing)
+                into = std::move(layer);
+            else
+                append(layer, into, limits);
+    }
+
+    [[nodiscard]] std::vector<RawLayer>& layers() { return all_; }
+    [[nodiscard]] const Findings& found() const { return found_; }
+
+  private:
+    /// RawLayer::begin of a layer without contents.
+    static constexpr std::size_t nothing = std::numeric_limits<std::size_t>::max();
+
+    [[nodiscard]] std::uint64_t offset(std::size_t contour) const {
+        return contours_.offsets.whole(contour, contours_.points.size());
+    }
+
+    /// Returns whether vector `i` begins a run, unless it is the first one.
+    [[nodiscard]] bool begins_run(std::size_t i) const {
+        const bool hatch = i >= first_hatch_;
+        const Array& layer = hatch ? hatches_->layer : contours_.layer;
+        const std::size_t k = hatch ? i - first_hatch_ : i;
+        constexpr std::uint64_t any = std::numeric_limits<std::uint64_t>::max();
+        return i == first_hatch_ || layer.whole(k, any) != layer.whole(k - 1, any);
+    }
+
+    /// Returns the layer of vector `i`, which has this number.
+    template <class Location>
+    RawLayer& run_of(std::size_t i, std::uint64_t number, Piece& piece, ReadLimits& limits,
+                     const Location& location) const {
+        if (piece.layers.empty() || piece.layers.back().number != number || i == first_hatch_) {
+            limits.make_room(piece.layers, 1, location);
+            piece.layers.emplace_back().number = number;
+            piece.layers.back().begin = i;
+        }
+        return piece.layers.back();
+    }
+
+    void add_contour(std::size_t i, Piece& piece, const Reading& reading) const {
+        const std::uint64_t begin = offset(i);
+        const std::uint64_t end = offset(i + 1);
+        if (end < begin)
+            contours_.offsets.fail(fmt::format("{} behind {}", end, begin), "they must not descend");
+        const auto position = [&] {
+            return fmt::format("contour {}", i);
+        };
+        const std::uint64_t number = contours_.layer.whole(i, layers_ - 1);
+        const auto part = static_cast<std::uint32_t>(contours_.part.whole(i, parts_ - 1));
+        RawLayer& into = run_of(i, number, piece, reading.limits, position);
+        reading.limits.make_room(into.points, end - begin, position);
+        for (std::uint64_t k = begin; k < end; ++k)
+            into.points.push_back({contours_.points.length(2 * k), contours_.points.length(2 * k + 1)});
+        into.end_contour(contours_.closed.whole(i, 1) != 0, part, reading.limits, position, piece.found);
+    }
+
+    void add_hatch(std::size_t i, Piece& piece, const Reading& reading) const {
+        const std::uint64_t k = i - first_hatch_;
+        const auto position = [&] {
+            return fmt::format("hatch line {}", k);
+        };
+        RawLayer& into = run_of(i, hatches_->layer.whole(k, layers_ - 1), piece, reading.limits, position);
+        reading.limits.make_room(into.hatches, 2, position);
+        for (const std::uint64_t at : {4 * k, 4 * k + 2})
+            into.hatches.push_back({hatches_->lines.length(at), hatches_->lines.length(at + 1)});
+        into.end_hatches(static_cast<std::uint32_t>(hatches_->part.whole(k, parts_ - 1)), reading.limits,
+                         position);
+    }
+
+    static void append(const RawLayer& more, RawLayer& into, ReadLimits& limits) {
+        const auto location = [] {
+            return std::string_view("array 'layer'");
+        };
+        limits.make_room(into.points, more.points.size(), location);
+        limits.make_room(into.ends, more.ends.size(), location);
+        limits.make_room(into.hatches, more.hatches.size(), location);
+        limits.make_room(into.hatch_ends, more.hatch_ends.size(), location);
+        into.append(more);
+        limits.give_back(0, (more.points.capacity() + more.hatches.capacity()) * sizeof(Point2) +
+                                more.ends.capacity() * sizeof(RawLayer::Contour) +
+                                more.hatch_ends.capacity() * sizeof(RawLayer::Hatches));
+    }
+
+    NpzContours contours_;
+    std::optional<NpzHatches> hatches_;
+    std::size_t first_hatch_; ///< its number
+    std::uint64_t layers_;
+    std::uint64_t parts_;
+    std::vector<RawLayer> all_;
+    Findings found_;
+};
+
 class NpzReader {
   public:
     NpzReader(const ZipReader& zip, LayerFile& file, ReadLimits& limits)
         : zip_(zip), file_(file), limits_(limits) {}
 
     void read(const Execution& execution) {
-        Executor executor(execution);
         const Array points = array("points");
         points.expect_shape({2}, "points have two coordinates");
         const Array offsets = list("offsets");
@@ -234,17 +410,11 @@ class NpzReader {
         read_labels.append_to(file_.warnings);
         check_part_planes(file_, z.size(), zip_.unpacked());
         read_rule();
-
-        std::vector<RawLayer> raw;
-        limits_.make_room(raw, z.size(), [] { return std::string_view("array 'z'"); });
-        raw.resize(z.size());
-        for (RawLayer& empty : raw)
-            empty.begin = nothing;
-        const Contours all{points, offsets, closed, layer, part};
-        read_contours(all, raw, executor);
-        const std::optional<Hatches> lines = hatches();
-        if (lines)
-            read_hatches(*lines, all.size(), raw);
+        const std::optional<NpzHatches> lines = hatches();
+        const auto vectors = std::make_shared<NpzVectors>(NpzContours{points, offsets, closed, layer, part},
+                                                          lines, z.size(), labels.size(), limits_);
+        read_layers_of(*vectors, limits_, execution, vectors->bytes());
+        std::vector<RawLayer> raw = std::move(vectors->layers());
         constexpr std::uint64_t most_index = 9'000'000'000'000'000;
         std::vector<PlacedLayer> planes;
         planes.reserve(raw.size());
@@ -259,17 +429,14 @@ class NpzReader {
                 z.fail(fmt::format("z = {} behind z = {}", at, z.length(i - 1)), "layers must ascend");
             planes.push_back({&raw[i], index.whole(i, most_index), at, from, to});
         }
-        add_layers(file_, planes, limits_, executor, layer_again(all, lines, file_.parts.size()));
-        for (const Array* lengths : {&points, &z, &bottom, &top})
+        add_layers(file_, planes, limits_, execution, parsing_again<NpzVectors>(vectors));
+        for (const Array* lengths : {&points, &z, &bottom, &top, lines ? &lines->lines : &points})
             if (lengths->is_single_precision())
                 file_.rounding.single_precision = true;
-        append_to(found_, file_.warnings);
+        append_to(vectors->found(), file_.warnings);
     }
 
   private:
-    /// RawLayer::begin of a layer without contents.
-    static constexpr std::size_t nothing = std::numeric_limits<std::size_t>::max();
-
     [[nodiscard]] Array array(const std::string& name) const {
         const ZipEntry* entry = zip_.find(name + ".npy");
         if (entry == nullptr)
@@ -293,170 +460,6 @@ class NpzReader {
         return result;
     }
 
-    /// Consecutive contours, as a list of layers for each change of layers.
-    struct Piece {
-        std::vector<std::pair<std::uint64_t, RawLayer>> layers = {}; ///< with the number of the layer
-        Findings found = {};
-        std::size_t end = 0; ///< number of the next contour
-    };
-
-    /// The arrays that describe contours, which share the memory of the archive.
-    struct Contours {
-        Array points;
-        Array offsets;
-        Array closed;
-        Array layer;
-        Array part;
-
-        [[nodiscard]] std::size_t size() const { return static_cast<std::size_t>(offsets.size() - 1); }
-        [[nodiscard]] std::uint32_t part_of(std::uint64_t i, std::size_t parts) const {
-            return static_cast<std::uint32_t>(part.whole(i, parts - 1));
-        }
-
-        /// Adds contour i, which has the points from `begin` to `end`, to its layer.
-        void add(std::uint64_t i, std::uint64_t begin, std::uint64_t end, std::uint32_t of_part,
-                 RawLayer& into, ReadLimits& limits, Findings& found) const {
-            const auto position = [&] {
-                return fmt::format("contour {}", i);
-            };
-            limits.make_room(into.points, end - begin, position);
-            for (std::uint64_t k = begin; k < end; ++k)
-                into.points.push_back({points.length(2 * k), points.length(2 * k + 1)});
-            into.end_contour(closed.whole(i, 1) != 0, of_part, limits, position, found);
-        }
-    };
-
-    /// The arrays that describe hatch lines.
-    struct Hatches {
-        Array lines;
-        Array layer;
-        Array part;
-
-        /// Adds line i to its layer.
-        void add(std::uint64_t i, std::size_t parts, RawLayer& into, ReadLimits& limits) const {
-            const auto position = [&] {
-                return fmt::format("hatch line {}", i);
-            };
-            limits.make_room(into.hatches, 2, position);
-            for (std::uint64_t k = 4 * i; k < 4 * i + 4; k += 2)
-                into.hatches.push_back({lines.length(k), lines.length(k + 1)});
-            into.end_hatches(static_cast<std::uint32_t>(part.whole(i, parts - 1)), limits, position);
-        }
-    };
-
-    /// Returns a function that reads consecutive contours of one layer again, from the first one, or hatch
-    /// lines, which are numbered behind the contours.
-    static ParseLayer layer_again(Contours contours, std::optional<Hatches> hatches, std::size_t parts) {
-        return [contours = std::move(contours), hatches = std::move(hatches), parts](std::size_t begin,
-                                                                                     ReadLimits& limits) {
-            constexpr std::uint64_t any = std::numeric_limits<std::uint64_t>::max();
-            RawLayer raw;
-            Findings found;
-            const auto for_run = [&](const Array& layer, std::uint64_t from, std::uint64_t to,
-                                     const auto& add) {
-                for (std::uint64_t i = from; i < to && layer.whole(i, any) == layer.whole(from, any); ++i)
-                    add(i);
-            };
-            if (begin < contours.size())
-                for_run(contours.layer, begin, contours.size(), [&](std::uint64_t i) {
-                    const auto offset = [&](std::uint64_t k) {
-                        return contours.offsets.whole(k, contours.points.size());
-                    };
-                    contours.add(i, offset(i), offset(i + 1), contours.part_of(i, parts), raw, limits, found);
-                });
-            else if (begin != nothing)
-                for_run(hatches->layer, begin - contours.size(), hatches->lines.size(),
-                        [&](std::uint64_t i) { hatches->add(i, parts, raw, limits); });
-            return raw;
-        };
-    }
-
-    void read_contours(const Contours& contours, std::vector<RawLayer>& raw, Executor& executor) {
-        static_cast<void>(contours.offsets.whole(0, 0));
-        read_pieces(
-            pieces_of(contours), contours.size(), executor,
-            [&](std::size_t begin, std::size_t limit) {
-                executor.check_cancelled();
-                return read_piece(contours, begin, limit, raw.size());
-            },
-            [&](Piece&& piece) {
-                found_.add(piece.found);
-                for (auto& [layer, contents] : piece.layers)
-                    put(std::move(contents), raw[layer]);
-            });
-    }
-
-    /// Returns the contours with which pieces begin: where the layer changes, as far as the arrays are sound.
-    static PieceBegins pieces_of(const Contours& contours) {
-        constexpr std::uint64_t points_of_piece = layer_piece_bytes / sizeof(Point2);
-        PieceBegins begins{0};
-        try {
-            std::uint64_t from = 0;
-            for (std::size_t i = 1; i < contours.size(); ++i) {
-                const std::uint64_t offset = contours.offsets.whole(i, contours.points.size());
-                if (offset - from < points_of_piece || offset < from)
-                    continue;
-                constexpr std::uint64_t any = std::numeric_limits<std::uint64_t>::max();
-                if (contours.layer.whole(i, any) == contours.layer.whole(i - 1, any))
-                    continue;
-                begins.push_back(i);
-                from = offset;
-            }
-        } catch (const Error&) { // reading the contours reports it
-        }
-        return begins;
-    }
-
-    Piece read_piece(const Contours& contours, std::size_t from, std::size_t to, std::size_t layers) const {
-        const Array& points = contours.points;
-        Piece piece;
-        std::uint64_t begin = contours.offsets.whole(from, points.size());
-        for (std::uint64_t i = from; i < to; ++i) {
-            const std::uint64_t end = contours.offsets.whole(i + 1, points.size());
-            if (end < begin)
-                contours.offsets.fail(fmt::format("{} behind {}", end, begin), "they must not descend");
-            const std::uint64_t layer = contours.layer.whole(i, layers - 1);
-            const std::uint32_t part = contours.part_of(i, file_.parts.size());
-            const auto position = [&] {
-                return fmt::format("contour {}", i);
-            };
-            if (piece.layers.empty() || piece.layers.back().first != layer) {
-                limits_.make_room(piece.layers, 1, position);
-                if (!piece.layers.empty())
-                    piece.layers.back().second.end_layer(limits_);
-                piece.layers.emplace_back(layer, RawLayer()).second.begin = static_cast<std::size_t>(i);
-            }
-            contours.add(i, begin, end, part, piece.layers.back().second, limits_, piece.found);
-            begin = end;
-        }
-        if (!piece.layers.empty())
-            piece.layers.back().second.end_layer(limits_);
-        piece.end = to;
-        return piece;
-    }
-
-    /// Adds contents to a layer, which may come more than once.
-    void put(RawLayer&& contents, RawLayer& into) const {
-        if (into.begin == nothing)
-            into = std::move(contents);
-        else
-            append(into, contents);
-    }
-
-    void append(RawLayer& into, const RawLayer& more) const {
-        const auto location = [] {
-            return std::string_view("array 'layer'");
-        };
-        limits_.make_room(into.points, more.points.size(), location);
-        limits_.make_room(into.ends, more.ends.size(), location);
-        limits_.make_room(into.hatches, more.hatches.size(), location);
-        limits_.make_room(into.hatch_ends, more.hatch_ends.size(), location);
-        into.append(more);
-        limits_.give_back(0, (more.points.capacity() + more.hatches.capacity()) * sizeof(Point2) +
-                                 more.ends.capacity() * sizeof(RawLayer::Contour) +
-                                 more.hatch_ends.capacity() * sizeof(RawLayer::Hatches));
-    }
-
     void read_rule() const {
         if (zip_.find("rule.npy") == nullptr)
             return;
@@ -469,42 +472,18 @@ class NpzReader {
         file_.rule = *rule;
     }
 
-    [[nodiscard]] std::optional<Hatches> hatches() const {
+    [[nodiscard]] std::optional<NpzHatches> hatches() const {
         if (zip_.find("hatches.npy") == nullptr)
             return std::nullopt;
         const Array lines = array("hatches");
         lines.expect_shape({2, 2}, "hatch lines have two points");
-        return Hatches{lines, list("hatch_layer", lines.size(), "hatch lines"),
-                       list("hatch_part", lines.size(), "hatch lines")};
-    }
-
-    void read_hatches(const Hatches& hatches, std::size_t contours, std::vector<RawLayer>& raw) const {
-        RawLayer run;
-        std::uint64_t of_layer = 0;
-        const auto end_run = [&] {
-            if (run.hatches.empty())
-                return;
-            run.end_layer(limits_);
-            put(std::exchange(run, RawLayer()), raw[of_layer]);
-        };
-        for (std::uint64_t i = 0; i < hatches.lines.size(); ++i) {
-            const std::uint64_t layer = hatches.layer.whole(i, raw.size() - 1);
-            if (layer != of_layer)
-                end_run();
-            of_layer = layer;
-            if (run.hatches.empty())
-                run.begin = static_cast<std::size_t>(contours + i);
-            hatches.add(i, file_.parts.size(), run, limits_);
-        }
-        end_run();
-        if (hatches.lines.is_single_precision())
-            file_.rounding.single_precision = true;
+        return NpzHatches{lines, list("hatch_layer", lines.size(), "hatch lines"),
+                          list("hatch_part", lines.size(), "hatch lines")};
     }
 
     const ZipReader& zip_;
     LayerFile& file_;
     ReadLimits& limits_;
-    Findings found_;
 };
 
 } // namespace

@@ -8,10 +8,9 @@
 #include "container/protobuf_reader.hpp"
 #include "container/text_position.hpp"
 #include "core/executor.hpp"
-#include "read/layer_assembly.hpp"
-#include "read/layer_pieces.hpp"
+#include "core/let_go.hpp"
 #include "read/layer_readers.hpp"
-#include "read/read_limits.hpp"
+#include "read/slice_engine.hpp"
 
 #include <fmt/format.h>
 
@@ -198,8 +197,7 @@ class JobShell {
 /// The messages of a file, by their offsets.
 class OvfMessages {
   public:
-    OvfMessages(std::string_view bytes, const std::string& name, ReadLimits& limits)
-        : bytes_(bytes), name_(name), limits_(limits) {}
+    OvfMessages(std::string_view bytes, const std::string& name) : bytes_(bytes), name_(name) {}
 
     [[noreturn]] void fail(std::uint64_t offset, const std::string& found,
                            const std::string& expected) const {
@@ -222,29 +220,14 @@ class OvfMessages {
     [[nodiscard]] ProtobufReader at(std::uint64_t offset) const {
         return ProtobufReader::delimited(bytes_, offset, name_);
     }
-
-    /// Takes the message at `offset` and returns its size. Throws Error{input} if a part of it was taken
-    /// before. Otherwise a small file whose tables refer to the same message many times could take very long.
-    std::uint64_t take(std::uint64_t offset) {
-        std::uint64_t end = offset;
-        static_cast<void>(ProtobufReader::delimited(bytes_, end, name_));
-        const auto next = taken_.upper_bound(offset);
-        const auto last = next == taken_.begin() ? taken_.end() : std::prev(next);
-        if ((next != taken_.end() && next->first < end) || (last != taken_.end() && last->second > offset))
-            fail(offset, "a second table, header or block", "work planes must share none");
-        if (last != taken_.end() && last->second == offset) {
-            last->second = end;
-        } else {
-            limits_.add_bytes_at(node_bytes, at_byte(offset));
-            taken_.emplace_hint(next, offset, end);
-        }
-        return end - offset;
+    /// Returns the offset behind the message at `offset`.
+    [[nodiscard]] std::uint64_t end_of(std::uint64_t offset) const {
+        static_cast<void>(ProtobufReader::delimited(bytes_, offset, name_));
+        return offset;
     }
 
-    /// Takes a table.
-    Table take_table(std::uint64_t offset) {
+    [[nodiscard]] Table table(std::uint64_t offset, ReadLimits& limits) const {
         Table table;
-        take(offset);
         ProtobufReader fields = at(offset);
         while (fields.next()) {
             const auto position = [&](std::int64_t value) {
@@ -257,7 +240,7 @@ class OvfMessages {
                 table.shell = position(fields.integer());
             else if (fields.field() == ovf::table::positions)
                 fields.integers([&](std::int64_t value) {
-                    limits_.make_room(table.positions, 1, at_byte(fields.position()));
+                    limits.make_room(table.positions, 1, at_byte(fields.position()));
                     table.positions.push_back(position(value));
                 });
         }
@@ -267,49 +250,73 @@ class OvfMessages {
   private:
     std::string_view bytes_;
     const std::string& name_;
-    ReadLimits& limits_;
-    std::map<std::uint64_t, std::uint64_t> taken_; ///< begin and end of the messages taken
+};
+
+/// The messages that were taken, each of which may be taken once.
+class TakenMessages {
+  public:
+    /// Takes the message at `offset` and returns its size. Throws Error{input} if a part of it was taken
+    /// before. Otherwise a small file whose tables refer to the same message many times could take very long.
+    std::uint64_t take(std::uint64_t offset, const OvfMessages& messages, ReadLimits& limits) {
+        const std::uint64_t end = messages.end_of(offset);
+        const auto next = ends_.upper_bound(offset);
+        const auto last = next == ends_.begin() ? ends_.end() : std::prev(next);
+        if ((next != ends_.end() && next->first < end) || (last != ends_.end() && last->second > offset))
+            messages.fail(offset, "a second table, header or block", "work planes must share none");
+        if (last != ends_.end() && last->second == offset) {
+            last->second = end;
+        } else {
+            limits.add_bytes_at(node_bytes, at_byte(offset));
+            ends_.emplace_hint(next, offset, end);
+        }
+        return end - offset;
+    }
+
+  private:
+    std::map<std::uint64_t, std::uint64_t> ends_; ///< by the offsets of their beginnings
 };
 
 /// A work plane whose messages are known and not read yet.
 struct WorkPlane {
-    std::uint64_t begin = 0;
     Table table;
     std::uint64_t bytes = 0; ///< size of its shell and its blocks
 };
 
 /// The contents of consecutive work planes.
-struct Planes {
-    explicit Planes(ReadLimits& limits) : parts(limits) {}
+struct OvfPlanes : KeyedLayers<BlockKind> {
+    using KeyedLayers::KeyedLayers;
 
-    std::vector<RawLayer> layers;
-    PartNumbers<BlockKind> parts;
-    Findings found;
     std::uint64_t first_number = 0; ///< of the first plane
     std::uint64_t last_number = 0;
-    std::size_t end = 0; ///< index of the plane that follows
 
     /// Compares the numbers of two consecutive planes. If planes have no numbers, all are 0.
     void compare_numbers(std::uint64_t before, std::uint64_t number, const std::string& location) {
         if (number != 0 && number != before + 1)
             found.note(FindingKind::other_plane_numbers, [&] { return location; });
     }
+
+    void append(OvfPlanes&& piece, ReadLimits& limits) {
+        compare_numbers(last_number, piece.first_number, piece.layers.front().location);
+        last_number = piece.last_number;
+        KeyedLayers::append(std::move(piece), limits);
+    }
 };
 
 /// Reads work planes in ascending order.
 class PlaneReader {
   public:
-    PlaneReader(const OvfMessages& messages, const JobShell& job, Planes& planes, ReadLimits& limits)
+    PlaneReader(const OvfMessages& messages, const JobShell& job, OvfPlanes& planes, ReadLimits& limits)
         : messages_(messages), job_(job), planes_(planes), limits_(limits) {}
 
-    void read(const WorkPlane& plane) {
-        limits_.make_room(planes_.layers, 1, at_byte(plane.begin));
+    /// Reads plane `i` of the job, whose offset is `begin`.
+    void read(std::size_t i, std::uint64_t begin, const Table& table) {
+        limits_.make_room(planes_.layers, 1, at_byte(begin));
         RawLayer& raw = planes_.layers.emplace_back();
-        raw.location = fmt::format("byte {}", plane.begin);
-        raw.begin = plane.begin;
+        raw.location = fmt::format("byte {}", begin);
+        raw.begin = i;
         std::int64_t blocks = 0; // number of blocks that the plane claims
         std::uint64_t number = 0;
-        ProtobufReader shell = messages_.at(plane.table.shell);
+        ProtobufReader shell = messages_.at(table.shell);
         while (shell.next()) {
             if (shell.field() == ovf::work_plane::z)
                 raw.z = finite_real(shell);
@@ -318,21 +325,21 @@ class PlaneReader {
             else if (shell.field() == ovf::work_plane::number)
                 number = static_cast<std::uint64_t>(shell.integer());
             else if (shell.field() == ovf::work_plane::repeats && shell.integer() != 0)
-                planes_.found.note(FindingKind::repeated_planes, at_byte(plane.begin));
+                planes_.found.note(FindingKind::repeated_planes, at_byte(begin));
             else if (shell.type() == ProtobufType::bits_32 &&
                      (shell.field() <= ovf::work_plane::y || (shell.field() >= ovf::work_plane::x_turn &&
                                                               shell.field() <= ovf::work_plane::z_turn)) &&
                      shell.real() != 0)
-                planes_.found.note(FindingKind::moved_planes, at_byte(plane.begin));
+                planes_.found.note(FindingKind::moved_planes, at_byte(begin));
         }
-        if (blocks != 0 && blocks != static_cast<std::int64_t>(plane.table.positions.size()))
-            planes_.found.note(FindingKind::other_block_counts, at_byte(plane.begin));
+        if (blocks != 0 && blocks != static_cast<std::int64_t>(table.positions.size()))
+            planes_.found.note(FindingKind::other_block_counts, at_byte(begin));
         if (planes_.layers.size() == 1)
             planes_.first_number = number;
         else
             planes_.compare_numbers(planes_.last_number, number, raw.location);
         planes_.last_number = number;
-        for (const std::uint64_t block : plane.table.positions)
+        for (const std::uint64_t block : table.positions)
             read_block(block, raw);
     }
 
@@ -434,150 +441,124 @@ class PlaneReader {
 
     const OvfMessages& messages_;
     const JobShell& job_;
-    Planes& planes_;
+    OvfPlanes& planes_;
     ReadLimits& limits_;
 };
 
-class OvfReader {
+class OvfFile {
   public:
-    OvfReader(std::string_view bytes, const std::string& name, LayerFile& file, ReadLimits& limits,
-              const Execution& execution)
-        : bytes_(bytes), name_(name), file_(file), limits_(limits), executor_(execution),
-          progress_(execution, Stage::read, bytes.size()), messages_(bytes, name, limits), job_(name, limits),
-          all_(limits) {}
+    using Piece = OvfPlanes;
 
-    void read() {
-        const Table planes = messages_.take_table(messages_.position_at(ovf::magic.size()));
-        job_.read(bytes_, planes.shell);
-        read_planes(planes.positions);
-        if (all_.layers.empty())
+    /// Reads the job.
+    OvfFile(std::string_view bytes, const std::string& name, ReadLimits& limits)
+        : messages_(bytes, name), limits_(limits), job_(name, limits), all_(limits) {
+        const std::uint64_t begin = messages_.position_at(ovf::magic.size());
+        taken_.take(begin, messages_, limits);
+        Table planes = messages_.table(begin, limits);
+        job_.read(bytes, planes.shell);
+        offsets_ = std::move(planes.positions);
+        if (offsets_.empty())
             throw Error(ErrorKind::input,
-                        fmt::format("{}: found no work plane; there must be one at least", name_));
-        if (job_.planes() != 0 && job_.planes() != static_cast<std::int64_t>(all_.layers.size()))
-            file_.warnings.push_back(fmt::format("the job announces {} work planes; the file has {}",
-                                                 job_.planes(), all_.layers.size()));
-        number_parts();
-        make_layers();
-        append_to(names_, file_.warnings);
-        append_to(all_.found, file_.warnings);
-        progress_.finish();
+                        fmt::format("{}: found no work plane; there must be one at least", name));
     }
 
-  private:
-    /// Reads the work planes at these offsets: finds their messages first, and then reads those on all
-    /// threads.
-    void read_planes(const std::vector<std::uint64_t>& offsets) {
-        std::vector<WorkPlane> planes;
-        limits_.make_room(planes, offsets.size(), at_byte(ovf::magic.size()));
-        PieceBegins begins;
-        std::exception_ptr error; // of the plane after those found
-        std::uint64_t bytes = 0;  // of the last piece
+    /// Finds the messages of planes, up to the first plane that is not sound.
+    [[nodiscard]] PieceBegins begins(Executor& executor) {
+        limits_.make_room(planes_, offsets_.size(), at_byte(ovf::magic.size()));
+        PieceBegins begins{0};
+        std::uint64_t bytes = 0; // of the last piece
         try {
-            for (const std::uint64_t begin : offsets) {
-                executor_.check_cancelled();
-                WorkPlane plane{begin, messages_.take_table(messages_.position_at(begin)), 0};
-                plane.bytes += messages_.take(plane.table.shell);
-                for (const std::uint64_t block : plane.table.positions)
-                    plane.bytes += messages_.take(block);
-                if (begins.empty() || bytes >= layer_piece_bytes) {
-                    begins.push_back(planes.size());
+            for (const std::uint64_t begin : offsets_) {
+                executor.check_cancelled();
+                WorkPlane plane = take_plane(begin);
+                if (bytes >= layer_piece_bytes) {
+                    begins.push_back(planes_.size());
                     bytes = 0;
                 }
                 bytes += plane.bytes;
-                planes.push_back(std::move(plane));
+                planes_.push_back(std::move(plane));
             }
-        } catch (const Error& found) {
-            if (found.kind() != ErrorKind::input)
+        } catch (const Error& error) {
+            if (error.kind() != ErrorKind::input)
                 throw;
-            error = std::current_exception();
+            unsound_ = std::current_exception();
         }
-        if (!planes.empty())
-            read_pieces(
-                begins, planes.size(), executor_,
-                [&](std::size_t begin, std::size_t end) {
-                    return read_piece(std::span(planes).subspan(begin, end - begin), end);
-                },
-                [&](Planes&& piece) { take(std::move(piece)); });
-        if (error)
-            std::rethrow_exception(error);
-        limits_.give_back(0, planes.capacity() * sizeof(WorkPlane));
+        return begins;
     }
+    [[nodiscard]] std::size_t end() const { return offsets_.size(); }
 
-    Planes read_piece(std::span<const WorkPlane> planes, std::size_t end) {
-        Planes piece(limits_);
-        piece.end = end;
-        PlaneReader reader(messages_, job_, piece, limits_);
-        for (const WorkPlane& plane : planes) {
-            executor_.check_cancelled();
-            reader.read(plane);
-            progress_.add(plane.bytes);
+    [[nodiscard]] OvfPlanes parse(std::size_t begin, std::size_t limit, const Reading& reading) const {
+        OvfPlanes piece(reading.limits);
+        piece.end = limit;
+        PlaneReader reader(messages_, job_, piece, reading.limits);
+        for (std::size_t i = begin; i < limit; ++i) {
+            reading.executor.check_cancelled();
+            if (reading.again) {
+                const std::uint64_t table = messages_.position_at(offsets_[i]);
+                reader.read(i, offsets_[i], messages_.table(table, reading.limits));
+                continue;
+            }
+            if (i == planes_.size())
+                std::rethrow_exception(unsound_);
+            reader.read(i, offsets_[i], planes_[i].table);
+            reading.progress.add(planes_[i].bytes);
         }
-        end_layers(piece.layers, limits_);
         return piece;
     }
+    [[nodiscard]] RawLayer layer(OvfPlanes&& piece) const { return std::move(piece).only(kinds_); }
+    void append(OvfPlanes&& piece, ReadLimits& limits) { all_.append(std::move(piece), limits); }
 
-    void take(Planes&& piece) {
-        all_.compare_numbers(all_.last_number, piece.first_number, piece.layers.front().location);
-        all_.last_number = piece.last_number;
-        all_.found.add(piece.found);
-        all_.parts.add(
-            piece.parts, piece.layers, [](const BlockKind& kind) { return kind; },
-            [&] { return std::string_view(piece.layers.front().location); });
-        append_layers(all_.layers, std::move(piece.layers), limits_);
-    }
-
-    /// Numbers parts in the order of their keys, and the exposures of a part in the order of the keys of
-    /// their parameters.
-    void number_parts() {
+    /// Returns the layers. Numbers parts in the order of their keys, and the exposures of a part in the order
+    /// of the keys of their parameters.
+    [[nodiscard]] std::vector<RawLayer> take_layers(LayerFile& file, VectorParts& parts) {
+        limits_.give_back(0, planes_.capacity() * sizeof(WorkPlane));
+        let_go(planes_);
+        taken_ = {};
+        if (job_.planes() != 0 && job_.planes() != static_cast<std::int64_t>(all_.layers.size()))
+            file.warnings.push_back(fmt::format("the job announces {} work planes; the file has {}",
+                                                job_.planes(), all_.layers.size()));
         if (all_.parts.empty())
-            all_.parts.number_of({.part = job_.first_part()}, at_byte(bytes_.size()));
-        ReadLabels read_labels;
-        std::map<std::int64_t, std::string> labels; // of parts with vectors
-        all_.parts.put(file_, all_.layers, [&](const BlockKind& kind) {
-            const auto [label, is_new] = labels.try_emplace(kind.part);
-            if (is_new)
-                label->second = names_.of(read_labels.of(job_.label(kind.part)));
-            PartInfo part{.label = label->second, .box = {}, .exposure = job_.exposure(kind)};
-            if (part.exposure) {
-                part.exposure->part = label->second;
-                part.label = part.exposure->label();
-            }
-            return part;
+            all_.parts.number_of({.part = job_.first_part()}, [] { return std::string_view("the end"); });
+        all_.parts.put(file, all_.layers, [&](const BlockKind& kind) {
+            return parts.of(kind.part, job_.label(kind.part), job_.exposure(kind));
         });
-        read_labels.append_to(file_.warnings);
+        parts.labels.append_to(file.warnings);
+        kinds_ = all_.parts.keys();
+        return std::move(all_.layers);
     }
 
-    /// Makes layers; the heights are their tops.
-    void make_layers() {
-        sort_by_height(all_.layers, file_.warnings);
-        check_part_planes(file_, all_.layers.size(), bytes_.size());
-        const double first = all_.layers.front().z;
-        const double first_step = job_.layer_thickness() > 0 ? job_.layer_thickness()
-                                  : all_.layers.size() > 1   ? all_.layers[1].z - first
-                                                             : std::max(first, 0.0);
-        add_layers_by_tops(file_, all_.layers, first - first_step, limits_, executor_,
-                           [bytes = bytes_, &name = name_,
-                            job = std::make_shared<const JobShell>(std::move(job_)),
-                            kinds = all_.parts.keys()](std::size_t begin, ReadLimits& limits) {
-                               OvfMessages messages(bytes, name, limits);
-                               Planes planes(limits);
-                               PlaneReader(messages, *job, planes, limits)
-                                   .read({begin, messages.take_table(messages.position_at(begin)), 0});
-                               planes.parts.put(planes.layers.front(), kinds);
-                               return only_layer(std::move(planes.layers));
-                           });
+    /// Returns the bottom of the first layer. The heights are the tops of layers.
+    [[nodiscard]] double bottom(const std::vector<RawLayer>& layers) const {
+        const double first = layers.front().z;
+        return first - (job_.layer_thickness() > 0 ? job_.layer_thickness()
+                        : layers.size() > 1        ? layers[1].z - first
+                                                   : std::max(first, 0.0));
+    }
+    [[nodiscard]] const Findings& found() const { return all_.found; }
+
+  private:
+    WorkPlane take_plane(std::uint64_t begin) {
+        const auto take = [&](std::uint64_t offset) {
+            return taken_.take(offset, messages_, limits_);
+        };
+        const std::uint64_t table = messages_.position_at(begin);
+        take(table);
+        WorkPlane plane{messages_.table(table, limits_)};
+        plane.bytes = take(plane.table.shell);
+        for (const std::uint64_t block : plane.table.positions)
+            plane.bytes += take(block);
+        return plane;
     }
 
-    std::string_view bytes_;
-    const std::string& name_;
-    LayerFile& file_;
-    ReadLimits& limits_;
-    Executor executor_;
-    ProgressMeter progress_;
     OvfMessages messages_;
+    ReadLimits& limits_;
     JobShell job_;
-    Planes all_;
-    DistinctNames names_;
+    std::vector<std::uint64_t> offsets_; ///< of the planes
+    TakenMessages taken_;
+    std::vector<WorkPlane> planes_;
+    std::exception_ptr unsound_; ///< the reason why the plane behind `planes_` cannot be read
+    OvfPlanes all_;
+    std::vector<BlockKind> kinds_; ///< of the parts of the file
 };
 
 } // namespace
@@ -590,7 +571,15 @@ LayerFile read_ovf(std::string_view bytes, const std::string& name, ReadLimits& 
                    const Execution& execution) {
     LayerFile file = layer_file(name, "ovf", 1);
     file.rounding.single_precision = true;
-    OvfReader(bytes, name, file, limits, execution).read();
+    const auto ovf = std::make_shared<OvfFile>(bytes, name, limits);
+    read_layers_of(*ovf, limits, execution, bytes.size());
+    VectorParts parts;
+    std::vector<RawLayer> layers = ovf->take_layers(file, parts);
+    sort_by_height(layers, file.warnings);
+    check_part_planes(file, layers.size(), bytes.size());
+    add_layers_by_tops(file, layers, ovf->bottom(layers), limits, execution, parsing_again<OvfFile>(ovf));
+    append_to(parts.names, file.warnings);
+    append_to(ovf->found(), file.warnings);
     return file;
 }
 

@@ -314,8 +314,7 @@ LayerFile read_slc(std::string_view bytes, const std::string& name, ReadLimits& 
     read_layers_of(*slc, limits, execution, bytes.size());
     double top = 0;
     std::vector<RawLayer> layers = slc->take_layers(file.warnings, top);
-    Executor executor(execution);
-    add_layers_by_bottoms(file, layers, top, limits, executor, parsing_again<SlcFile>(slc));
+    add_layers_by_bottoms(file, layers, top, limits, execution, parsing_again<SlcFile>(slc));
     return file;
 }
 

@@ -65,9 +65,7 @@ class ReadPosition {
 ///
 /// Throws as `read_pieces` does.
 template <class Format>
-void read_layers_of(Format& format, ReadLimits& limits, const Execution& execution, std::uint64_t bytes) {
-    Executor executor(execution);
-    ProgressMeter progress(execution, Stage::read, bytes);
+void read_layers_of(Format& format, ReadLimits& limits, Executor& executor, ProgressMeter& progress) {
     const PieceBegins begins = format.begins(executor);
     read_pieces(
         begins, format.end(), executor,
@@ -77,6 +75,14 @@ void read_layers_of(Format& format, ReadLimits& limits, const Execution& executi
             return piece;
         },
         [&](auto&& piece) { format.append(std::move(piece), limits); });
+}
+
+/// The same for a file of this number of bytes that consists of pieces alone.
+template <class Format>
+void read_layers_of(Format& format, ReadLimits& limits, const Execution& execution, std::uint64_t bytes) {
+    Executor executor(execution);
+    ProgressMeter progress(execution, Stage::read, bytes);
+    read_layers_of(format, limits, executor, progress);
     progress.finish();
 }
 

@@ -8,10 +8,8 @@
 #include "container/toolpath_3mf_format.hpp"
 #include "container/xml.hpp"
 #include "core/executor.hpp"
-#include "read/layer_assembly.hpp"
-#include "read/layer_pieces.hpp"
 #include "read/layer_readers.hpp"
-#include "read/read_limits.hpp"
+#include "read/slice_engine.hpp"
 #include "read/three_mf_part.hpp"
 #include "read/three_mf_terms.hpp"
 
@@ -22,6 +20,7 @@
 #include <exception>
 #include <map>
 #include <memory>
+#include <numeric>
 #include <optional>
 #include <set>
 #include <utility>
@@ -198,10 +197,11 @@ struct SegmentKind {
 
 class LayerReader {
   public:
+    /// Reads the last one of these layers.
     LayerReader(const std::string& document, const Model& model, const Toolpath& toolpath,
-                PartNumbers<SegmentKind>& kinds, Findings& found, RawLayer& raw, ReadLimits& limits)
-        : document_(document), model_(model), toolpath_(toolpath), kinds_(kinds), found_(found), raw_(raw),
-          limits_(limits), unit_mm_(toolpath.unit * model.unit_mm) {}
+                KeyedLayers<SegmentKind>& layers, ReadLimits& limits)
+        : document_(document), model_(model), toolpath_(toolpath), kinds_(layers.parts), found_(layers.found),
+          raw_(layers.layers.back()), limits_(limits), unit_mm_(toolpath.unit * model.unit_mm) {}
 
     void start(const ThreeMfElement& element) {
         if (!is_toolpath(element.name.space))
@@ -294,192 +294,137 @@ class LayerReader {
     std::uint32_t kind_ = 0; ///< its number
 };
 
-/// A toolpath, and the parts of the package with its layers.
-struct ToolpathParts {
-    /// One layer.
-    struct Piece {
-        RawLayer raw;
-        PartNumbers<SegmentKind> kinds;
-        Findings found = {};
-        std::size_t end; ///< number of the next layer
-    };
+/// Returns the toolpath to which the build refers, or the first one.
+const Toolpath& chosen_toolpath(const Model& model, const std::string& document) {
+    const auto found = model.chosen ? model.toolpaths.find(*model.chosen) : model.toolpaths.begin();
+    if (found == model.toolpaths.end())
+        throw Error(ErrorKind::input,
+                    fmt::format("{}: found no toolpath; the build must have one", document));
+    return found->second;
+}
 
-    const ZipReader& package;
-    Model model;
-    const Toolpath& toolpath; ///< of the model
-    std::vector<std::string> layers = {};
-
-    /// Returns the size of a unit of coordinates and heights.
-    [[nodiscard]] double unit_mm() const { return toolpath.unit * model.unit_mm; }
-
-    /// Reads the layer with this number. May be called by any number of threads at once.
-    [[nodiscard]] Piece read(std::size_t number, ReadLimits& limits, const Executor& executor) const {
-        Piece piece{.raw = {}, .kinds = PartNumbers<SegmentKind>(limits), .end = number + 1};
-        piece.raw.z = toolpath.layers[number].top * unit_mm();
-        piece.raw.begin = number;
-        const ByteSource source = unpack_part(package, layers[number], limits);
-        piece.raw.location = source.name;
-        LayerReader reader(source.name, model, toolpath, piece.kinds, piece.found, piece.raw, limits);
-        parse_part(source,
-                   {.start = [&](const ThreeMfElement& element) { reader.start(element); },
-                    .end =
-                        [&](XmlName element) {
-                            reader.end(element);
-                        }},
-                   executor);
-        return piece;
-    }
-};
-
-class ToolpathReader {
+/// A toolpath, and the parts of the package with its layers. A piece is one layer.
+class ToolpathLayers {
   public:
-    ToolpathReader(const ZipReader& package, LayerFile& file, ReadLimits& limits, const Execution& execution)
-        : package_(package), file_(file), limits_(limits), executor_(execution), kinds_(limits) {}
+    using Piece = KeyedLayers<SegmentKind>;
 
-    void read() {
-        const std::string root = root_model(package_);
-        const ByteSource source = unpack_part(package_, root, limits_, &executor_);
-        ToolpathModelReader reader(limits_);
-        parse_part(source,
-                   {.start =
-                        [&](const ThreeMfElement& element) {
-                            reader.start(element);
-                        }},
-                   executor_);
-        Model model = reader.take();
-        const Toolpath& toolpath = chosen(model, source.name);
-        // Moving a map does not move what is in it.
-        const auto parts = std::make_shared<ToolpathParts>(
-            ToolpathParts{.package = package_, .model = std::move(model), .toolpath = toolpath});
-        file_.units_mm = parts->unit_mm();
-        file_.rounding = {.step_mm = file_.units_mm};
-        std::vector<RawLayer> layers;
-        limits_.make_room(layers, toolpath.layers.size(), [] { return std::string_view("the layers"); });
-        read_layers(root, source.name, *parts, layers);
-        if (layers.empty())
+    /// Finds the parts, up to the first one that cannot be that of a layer.
+    ToolpathLayers(const ZipReader& package, const std::string& root, const std::string& document,
+                   Model model, ReadLimits& limits)
+        : package_(package), model_(std::move(model)), toolpath_(chosen_toolpath(model_, document)),
+          all_(limits) {
+        if (toolpath_.layers.empty())
             throw Error(
                 ErrorKind::input,
-                fmt::format("{}: found a toolpath without layers; there must be one at least", source.name));
-        number_parts(*parts, layers);
-        make_layers(parts, layers);
-        append_to(names_, file_.warnings);
-        append_to(found_, file_.warnings);
-    }
-
-  private:
-    /// Returns the toolpath to which the build refers, or the first one.
-    [[nodiscard]] static const Toolpath& chosen(const Model& model, const std::string& document) {
-        const auto found = model.chosen ? model.toolpaths.find(*model.chosen) : model.toolpaths.begin();
-        if (found == model.toolpaths.end())
-            throw Error(ErrorKind::input,
-                        fmt::format("{}: found no toolpath; the build must have one", document));
-        return found->second;
-    }
-
-    void read_layers(const std::string& root, const std::string& document, ToolpathParts& parts,
-                     std::vector<RawLayer>& layers) {
+                fmt::format("{}: found a toolpath without layers; there must be one at least", document));
         std::set<const ZipEntry*> known;
-        std::uint64_t bytes = 0;
-        std::exception_ptr error; // of the layer after those named
         try {
-            for (const Toolpath::Listed& listed : parts.toolpath.layers) {
-                std::string part = opc_resolved(package_, root, listed.path);
-                const ZipEntry* const entry = package_.find(part);
+            for (const Toolpath::Listed& listed : toolpath_.layers) {
+                std::string part = opc_resolved(package, root, listed.path);
+                const ZipEntry* const entry = package.find(part);
                 if (!known.insert(entry).second)
                     throw Error(
                         ErrorKind::input,
                         fmt::format(
                             "{}, line {}: found the layer '{}' a second time; each has a part of its own",
                             document, listed.line, printable(listed.path, 100)));
-                limits_.add_bytes_at(sizeof part + part.size() + node_bytes, at_line(listed.line));
-                parts.layers.push_back(std::move(part));
-                bytes += entry == nullptr ? 0 : entry->size;
+                limits.add_bytes_at(sizeof part + part.size() + node_bytes, at_line(listed.line));
+                parts_.push_back(std::move(part));
+                bytes_ += entry == nullptr ? 0 : entry->size;
             }
         } catch (const Error&) {
-            error = std::current_exception();
+            unsound_ = std::current_exception();
         }
-        limits_.keep_text_in_memory(bytes);
-        PieceBegins begins;
-        for (std::size_t i = 0; i < parts.layers.size(); ++i)
-            begins.push_back(i);
-        if (!begins.empty())
-            read_pieces(
-                begins, begins.size(), executor_,
-                [&](std::size_t i, std::size_t) {
-                    executor_.check_cancelled();
-                    ToolpathParts::Piece piece = parts.read(i, limits_, executor_);
-                    piece.raw.end_layer(limits_);
-                    return piece;
-                },
-                [&](ToolpathParts::Piece&& piece) {
-                    kinds_.add(
-                        piece.kinds, {&piece.raw, 1}, [](const SegmentKind& kind) { return kind; },
-                        [&] { return std::string_view(piece.raw.location); });
-                    found_.add(piece.found);
-                    layers.push_back(std::move(piece.raw));
-                });
-        if (error)
-            std::rethrow_exception(error);
     }
+    ToolpathLayers(const ToolpathLayers&) = delete;
+    ToolpathLayers& operator=(const ToolpathLayers&) = delete;
 
-    /// Numbers parts in the order of the build, and exposures of each part in that of the profiles.
-    void number_parts(const ToolpathParts& parts, std::vector<RawLayer>& layers) {
-        std::vector<std::string> labels(parts.model.items.size());
-        for (const auto& [uuid, item] : parts.model.items)
+    /// Returns the number of bytes to which the parts unpack.
+    [[nodiscard]] std::uint64_t bytes() const { return bytes_; }
+    /// Returns the size of a unit of coordinates and heights.
+    [[nodiscard]] double unit_mm() const { return toolpath_.unit * model_.unit_mm; }
+    [[nodiscard]] double bottom() const { return toolpath_.bottom * unit_mm(); }
+
+    [[nodiscard]] PieceBegins begins(Executor& /*executor*/) const {
+        PieceBegins begins(end());
+        std::iota(begins.begin(), begins.end(), std::size_t{0});
+        return begins;
+    }
+    [[nodiscard]] std::size_t end() const { return toolpath_.layers.size(); }
+
+    [[nodiscard]] Piece parse(std::size_t begin, std::size_t /*limit*/, const Reading& reading) const {
+        reading.executor.check_cancelled();
+        if (begin == parts_.size())
+            std::rethrow_exception(unsound_);
+        Piece piece(reading.limits);
+        piece.end = begin + 1;
+        const ByteSource source = unpack_part(package_, parts_[begin], reading.limits);
+        reading.limits.make_room(piece.layers, 1, [&] { return std::string_view(source.name); });
+        RawLayer& raw = piece.layers.emplace_back();
+        raw.z = toolpath_.layers[begin].top * unit_mm();
+        raw.begin = begin;
+        raw.location = source.name;
+        LayerReader reader(source.name, model_, toolpath_, piece, reading.limits);
+        parse_part(source,
+                   {.start = [&](const ThreeMfElement& element) { reader.start(element); },
+                    .end =
+                        [&](XmlName element) {
+                            reader.end(element);
+                        }},
+                   reading.executor);
+        reading.progress.add(source.bytes.size());
+        return piece;
+    }
+    [[nodiscard]] RawLayer layer(Piece&& piece) const { return std::move(piece).only(kinds_); }
+    void append(Piece&& piece, ReadLimits& limits) { all_.append(std::move(piece), limits); }
+
+    /// Returns the layers. Numbers parts in the order of the build, and exposures of each part in that of the
+    /// profiles.
+    [[nodiscard]] std::vector<RawLayer> take_layers(LayerFile& file, VectorParts& names) {
+        std::vector<std::string> labels(model_.items.size());
+        for (const auto& [uuid, item] : model_.items)
             labels[item.first] = item.second;
-        std::vector<const Toolpath::Profile*> profiles(parts.toolpath.profiles.size());
-        for (const auto& [uuid, profile] : parts.toolpath.profiles)
+        std::vector<const Toolpath::Profile*> profiles(toolpath_.profiles.size());
+        for (const auto& [uuid, profile] : toolpath_.profiles)
             profiles[profile.number] = &profile;
-        ReadLabels read_labels;
-        std::map<std::size_t, std::string> names; // of items with vectors
-        kinds_.put(file_, layers, [&](const SegmentKind& kind) {
-            const auto [name, is_new] = names.try_emplace(kind.item);
-            if (is_new)
-                name->second = names_.of(read_labels.of(labels[kind.item]));
-            return part_of(kind, name->second, *profiles[kind.profile]);
+        all_.parts.put(file, all_.layers, [&](const SegmentKind& kind) {
+            const Toolpath::Profile& profile = *profiles[kind.profile];
+            std::optional<Exposure> exposure = profile.exposure;
+            if (exposure && !profile.says_kind) {
+                exposure->kind = kind.hatches ? VectorKind::hatch : VectorKind::contour;
+                exposure->contour = kind.hatches ? 0 : 1;
+            }
+            return names.of(static_cast<std::int64_t>(kind.item), labels[kind.item], std::move(exposure));
         });
-        if (file_.parts.empty())
-            file_.parts.push_back({.label = labels.empty() ? std::string() : read_labels.of(labels.front())});
-        read_labels.append_to(file_.warnings);
+        if (file.parts.empty())
+            file.parts.push_back({.label = labels.empty() ? std::string() : names.labels.of(labels.front())});
+        names.labels.append_to(file.warnings);
+        kinds_ = all_.parts.keys();
+        return std::move(all_.layers);
     }
+    [[nodiscard]] const Findings& found() const { return all_.found; }
 
-    static PartInfo part_of(const SegmentKind& kind, const std::string& label,
-                            const Toolpath::Profile& profile) {
-        PartInfo part{.label = label, .box = {}, .exposure = profile.exposure};
-        if (!part.exposure)
-            return part;
-        Exposure& exposure = *part.exposure;
-        exposure.part = label;
-        if (!profile.says_kind) {
-            exposure.kind = kind.hatches ? VectorKind::hatch : VectorKind::contour;
-            exposure.contour = kind.hatches ? 0 : 1;
-        }
-        part.label = exposure.label();
-        return part;
-    }
-
-    void make_layers(std::shared_ptr<const ToolpathParts> parts, std::vector<RawLayer>& layers) {
-        sort_by_height(layers, file_.warnings);
-        check_part_planes(file_, layers.size(), package_.unpacked());
-        const double bottom = std::min(parts->toolpath.bottom * file_.units_mm, layers.front().z);
-        add_layers_by_tops(
-            file_, layers, bottom, limits_, executor_,
-            [parts = std::move(parts), kinds = kinds_.keys()](std::size_t begin, ReadLimits& limits) {
-                const Execution silent{.threads = 1};
-                ToolpathParts::Piece piece = parts->read(begin, limits, Executor(silent));
-                piece.kinds.put(piece.raw, kinds);
-                return std::move(piece.raw);
-            });
-    }
-
+  private:
     const ZipReader& package_;
-    LayerFile& file_;
-    ReadLimits& limits_;
-    Executor executor_;
-    PartNumbers<SegmentKind> kinds_;
-    DistinctNames names_;
-    Findings found_;
+    Model model_;
+    const Toolpath& toolpath_; ///< of the model
+    std::vector<std::string> parts_;
+    std::uint64_t bytes_ = 0;
+    std::exception_ptr unsound_; ///< the reason why the layer behind `parts_` has no part
+    Piece all_;
+    std::vector<SegmentKind> kinds_; ///< of the parts of the file
 };
+
+Model read_toolpath_model(const ByteSource& source, ReadLimits& limits, const Executor& executor) {
+    ToolpathModelReader reader(limits);
+    parse_part(source,
+               {.start =
+                    [&](const ThreeMfElement& element) {
+                        reader.start(element);
+                    }},
+               executor);
+    return reader.take();
+}
 
 } // namespace
 
@@ -494,7 +439,23 @@ bool is_toolpath_3mf(const ZipReader& package) {
 LayerFile read_toolpath_3mf(const ZipReader& package, ReadLimits& limits, const Execution& execution) {
     LayerFile file = layer_file(package.name(), "3mf-toolpath");
     file.warnings = package.counted_warnings();
-    ToolpathReader(package, file, limits, execution).read();
+    const std::string root = root_model(package);
+    Executor executor(execution);
+    const ByteSource source = unpack_part(package, root, limits, &executor);
+    const auto toolpath = std::make_shared<ToolpathLayers>(
+        package, root, source.name, read_toolpath_model(source, limits, executor), limits);
+    limits.keep_text_in_memory(toolpath->bytes());
+    file.units_mm = toolpath->unit_mm();
+    file.rounding = {.step_mm = file.units_mm};
+    read_layers_of(*toolpath, limits, execution, toolpath->bytes());
+    VectorParts names;
+    std::vector<RawLayer> layers = toolpath->take_layers(file, names);
+    sort_by_height(layers, file.warnings);
+    check_part_planes(file, layers.size(), package.unpacked());
+    add_layers_by_tops(file, layers, std::min(toolpath->bottom(), layers.front().z), limits, execution,
+                       parsing_again<ToolpathLayers>(toolpath));
+    append_to(names.names, file.warnings);
+    append_to(toolpath->found(), file.warnings);
     return file;
 }
 

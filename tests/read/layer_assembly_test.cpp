@@ -183,11 +183,10 @@ TEST(LayerAssembly, StacksLayersWithoutGaps) {
         };
         end_layers(raw, limited.limits);
         const double other = tops ? 1 : z + 0.5;
-        Executor executor({.threads = 3});
         if (tops)
-            add_layers_by_tops(file, raw, other, limited.limits, executor, parse);
+            add_layers_by_tops(file, raw, other, limited.limits, {.threads = 3}, parse);
         else
-            add_layers_by_bottoms(file, raw, other, limited.limits, executor, parse);
+            add_layers_by_bottoms(file, raw, other, limited.limits, {.threads = 3}, parse);
         EXPECT_EQ(file.plane_bytes == 0, kept == KeptPlanes::all);
         const std::vector<LayerPart> parts = file.in_memory();
         for (const LayerPart& part : parts) {
