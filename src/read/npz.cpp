@@ -25,6 +25,19 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "numbers are read as memory has them");
 
+enum class NumpyType : std::uint8_t { f4, f8, i4, i8, u4, u8, byte, other };
+
+NumpyType numpy_type(std::string_view text) {
+    return text == "<f8"                    ? NumpyType::f8
+           : text == "<f4"                  ? NumpyType::f4
+           : text == "<i8"                  ? NumpyType::i8
+           : text == "<u8"                  ? NumpyType::u8
+           : text == "<i4"                  ? NumpyType::i4
+           : text == "<u4"                  ? NumpyType::u4
+           : text == "|b1" || text == "|u1" ? NumpyType::byte
+                                            : NumpyType::other;
+}
+
 /// One array of the archive.
 class Array {
   public:
@@ -44,14 +57,14 @@ class Array {
             fail("an array of another shape", what);
     }
 
-    [[nodiscard]] bool is_single_precision() const { return type_ == "<f4"; }
+    [[nodiscard]] bool is_single_precision() const { return numbers_ == NumpyType::f4; }
 
     /// Returns a length in millimetres. `i` is an index among all numbers of the array.
     [[nodiscard]] double length(std::uint64_t i) const {
         double value = 0;
-        if (type_ == "<f8")
+        if (numbers_ == NumpyType::f8)
             value = at<double>(i);
-        else if (type_ == "<f4")
+        else if (numbers_ == NumpyType::f4)
             value = at<float>(i);
         else
             fail(fmt::format("numbers of type '{}'", excerpt(type_)), "lengths are '<f8' or '<f4'");
@@ -64,13 +77,13 @@ class Array {
     /// Returns an integer between 0 and `most`.
     [[nodiscard]] std::uint64_t whole(std::uint64_t i, std::uint64_t most) const {
         std::uint64_t value = 0;
-        if (type_ == "<i8" || type_ == "<u8")
+        if (numbers_ == NumpyType::i8 || numbers_ == NumpyType::u8)
             value = at<std::uint64_t>(i); // a negative one exceeds any `most`
-        else if (type_ == "<i4")
+        else if (numbers_ == NumpyType::i4)
             value = static_cast<std::uint64_t>(std::int64_t{at<std::int32_t>(i)});
-        else if (type_ == "<u4")
+        else if (numbers_ == NumpyType::u4)
             value = at<std::uint32_t>(i);
-        else if (type_ == "|b1" || type_ == "|u1")
+        else if (numbers_ == NumpyType::byte)
             value = at<std::uint8_t>(i);
         else
             fail(fmt::format("numbers of type '{}'", excerpt(type_)),
@@ -121,6 +134,7 @@ class Array {
         const std::string_view dictionary = bytes_.substr(text_begin, length);
         begin_ = text_begin + length;
         type_ = std::string(quoted(dictionary, "descr"));
+        numbers_ = numpy_type(type_);
         read_shape(dictionary);
         if (value(dictionary, "fortran_order").starts_with("True") && shape_.size() > 1)
             fail("an array in Fortran's order", "the last index must run fastest");
@@ -191,6 +205,7 @@ class Array {
     ByteSource source_;
     std::string_view bytes_;
     std::string type_;
+    NumpyType numbers_ = NumpyType::other; ///< the type, which each number asks for
     std::vector<std::uint64_t> shape_;
     std::uint64_t element_ = 0;
     std::size_t begin_ = 0;
