@@ -1,16 +1,17 @@
 #include "read/layer_pieces.hpp"
 
 #include <algorithm>
+#include <iterator>
 
 namespace lamella {
 
 std::uint64_t TextPieces::line(std::size_t begin) const {
     if (lines_.empty())
         return counter_.line(begin);
-    const auto found = std::lower_bound(begins_.begin(), begins_.end(), begin);
-    return found != begins_.end() && *found == begin
-               ? lines_[static_cast<std::size_t>(found - begins_.begin())]
-               : line_at(text_, begin);
+    assert(begin >= begins_.front());
+    const auto last = std::prev(std::upper_bound(begins_.begin(), begins_.end(), begin));
+    return lines_[static_cast<std::size_t>(last - begins_.begin())] +
+           line_at(text_.substr(*last), begin - *last) - 1;
 }
 
 TextPieces find_text_pieces(std::string_view text, std::size_t begin, std::string_view word,

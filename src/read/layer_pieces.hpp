@@ -48,7 +48,7 @@ class TextPieces {
         : text_(text), begins_(std::move(begins)), lines_(std::move(lines)), counter_(text) {}
 
     [[nodiscard]] const PieceBegins& begins() const noexcept { return begins_; }
-    /// Returns the line with byte `begin` of the text. Fast where a piece begins.
+    /// Returns the line with byte `begin` of the text. Fast near the beginning of a piece.
     [[nodiscard]] std::uint64_t line(std::size_t begin) const;
 
   private:
@@ -106,6 +106,14 @@ void read_pieces(const PieceBegins& begins, std::size_t end, Executor& executor,
     });
 }
 
+/// Returns the text with which the element of XML at `begin` starts, up to the value of an attribute. The
+/// elements that follow probably start alike.
+[[nodiscard]] inline std::string_view start_of_siblings(std::string_view text, std::size_t begin) {
+    constexpr std::size_t longest = 64;
+    const std::string_view first = text.substr(begin, longest);
+    return first.substr(0, first.find_first_of("\"'>"));
+}
+
 /// Reads elements of XML that follow one another from `begin`, on line `line`, on. As it is not known where
 /// the last one ends, the text is divided a window at a time. parse(begin, limit, line) is as in read_pieces;
 /// if the end of a piece is npos, it cannot be read. take(piece, line at its end) returns whether reading
@@ -119,10 +127,7 @@ void read_sibling_pieces(std::string_view text, std::size_t begin, std::uint64_t
         std::size_t end; ///< in the window
         std::uint64_t lines = 0;
     };
-    // The elements probably begin like the first one, up to the value of an attribute.
-    constexpr std::size_t longest = 64;
-    const std::string_view first = text.substr(begin, longest);
-    const std::string_view word = first.substr(0, first.find_first_of("\"'>"));
+    const std::string_view word = start_of_siblings(text, begin);
     std::size_t window_bytes = layer_piece_bytes;
     for (bool more = true; more;) {
         const std::string_view window = text.substr(begin, window_bytes);
