@@ -1,20 +1,18 @@
 // Every slice format that keeps exposures: scan vectors come back in their order, with what the format says
-// of them, and no bytes of it do more harm than an error.
+// of them.
 
-#include "temporary_folder.hpp"
+#include "fixtures/layer_outcome.hpp"
+#include "fixtures/random_layers.hpp"
 
 #include <gtest/gtest.h>
 #include <lamella/formats.hpp>
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <functional>
 #include <map>
-#include <memory>
 #include <numbers>
 #include <optional>
-#include <random>
 #include <set>
 #include <span>
 #include <string>
@@ -162,23 +160,11 @@ Job scanned() {
 }
 
 std::string written(const char* format, const Job& job, std::vector<std::string>* warnings = nullptr) {
-    const TemporaryFolder folder;
-    const PlaneSource source = source_of(job.parts);
-    std::vector<Plane> planes;
-    for (std::size_t i = 0; i < job.info.layers; ++i)
-        planes.push_back(source.plane(i));
-    std::vector<std::string> said =
-        write_layers(folder.file("out"), layer_format(format, ""), planes, job.info);
-    if (warnings != nullptr)
-        *warnings = std::move(said);
-    return file_bytes(folder.file("out"));
+    return test::layer_bytes(format, job.parts, job.info, warnings);
 }
 
 LayerFile read(std::string_view bytes) {
-    // Exactly as long as the bytes, so that a sanitizer sees one byte too far.
-    const auto copy = std::make_unique<std::byte[]>(bytes.size());
-    std::memcpy(copy.get(), bytes.data(), bytes.size());
-    return read_layers(std::span(copy.get(), bytes.size()), "test", {}, {.threads = 1});
+    return test::read_exactly(bytes, "test");
 }
 
 void expect_points(std::span<const Point2> found, std::span<const Point2> expected,
@@ -421,50 +407,6 @@ TEST(ScanFormats, LeaveChainsOpenWhoseEndsRoundingMakesEqualWhereTheyCan) {
                 ASSERT_EQ(layer.points.size(), 5U) << format.name;
                 EXPECT_NEAR(layer.points[4].x, x, 1e-6) << format.name;
             }
-        }
-    }
-}
-
-// An input error, or layers of the same planes.
-void expect_harmless(std::string_view bytes) {
-    try {
-        const LayerFile file = read(bytes);
-        const std::vector<LayerPart> parts = file.in_memory();
-        ASSERT_FALSE(file.parts.empty());
-        for (const LayerPart& part : parts) {
-            ASSERT_EQ(part.layers.size(), parts.front().layers.size());
-            for (std::size_t i = 0; i < part.layers.size(); ++i) {
-                ASSERT_EQ(part.layers[i].offsets.back(), part.layers[i].points.size());
-                ASSERT_EQ(part.hatches_of(i).size() % 2, 0U);
-            }
-        }
-    } catch (const Error& error) {
-        ASSERT_EQ(error.kind(), ErrorKind::input) << error.what();
-        ASSERT_EQ(std::string(error.what()).find('\n'), std::string::npos) << error.what();
-    }
-}
-
-TEST(ScanFormats, TruncatedFilesAreErrors) {
-    for (const ScanFormat& format : scan_formats()) {
-        const std::string bytes = written(format.name, scanned());
-        for (std::size_t size = 1; size < bytes.size(); size += 1 + bytes.size() / 4000)
-            expect_harmless(std::string_view(bytes).substr(0, size));
-    }
-}
-
-TEST(ScanFormats, ChangedBytesAreErrorsOrOtherVectors) {
-    std::mt19937_64 random(11);
-    for (const ScanFormat& format : scan_formats()) {
-        const std::string bytes = written(format.name, scanned());
-        for (int i = 0; i < 1500; ++i) {
-            std::string changed = bytes;
-            // Half of them near the end, where tables are.
-            const std::size_t from =
-                i % 2 == 0 ? 0 : bytes.size() - std::min<std::size_t>(bytes.size(), 1500);
-            for (std::size_t k = 0; k <= random() % 4; ++k)
-                changed[from + random() % (changed.size() - from)] =
-                    static_cast<char>(random() % 4 == 0 ? 0xFF : random());
-            expect_harmless(changed);
         }
     }
 }

@@ -1,7 +1,7 @@
-// Every slice format that is read: what is written comes back, at the resolution of the format; and no bytes
-// of it do more harm than an error.
+// Every slice format that is read: what is written comes back, at the resolution of the format.
 
-#include "fixtures/rounds.hpp"
+#include "fixtures/layer_outcome.hpp"
+#include "fixtures/random_layers.hpp"
 #include "temporary_folder.hpp"
 
 #include <gtest/gtest.h>
@@ -9,15 +9,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <filesystem>
 #include <functional>
 #include <memory>
 #include <mutex>
-#include <random>
 #include <span>
 #include <string>
-#include <tuple>
 #include <vector>
 
 namespace lamella {
@@ -72,54 +69,6 @@ const std::vector<Resolution>& readable() {
     return formats;
 }
 
-// Rings of both directions, chains and hatches; some planes are empty.
-std::vector<LayerPart> random_parts(unsigned seed, std::size_t parts, std::size_t planes) {
-    std::mt19937_64 random(seed);
-    const auto uniform = [&](double low, double high) {
-        return low + (high - low) * static_cast<double>(random() >> 11U) * 0x1p-53;
-    };
-    std::vector<LayerPart> all(parts);
-    double bottom = 0.5;
-    for (std::size_t plane = 0; plane < planes; ++plane) {
-        const double top = bottom + uniform(0.1, 0.3);
-        for (LayerPart& part : all) {
-            LayerBuilder builder;
-            const std::size_t contours = random() % 5;
-            for (std::size_t c = 0; c < contours; ++c) {
-                const Point2 middle{uniform(-50, 50), uniform(-50, 50)};
-                const double turn = random() % 2 == 0 ? 1 : -1;
-                const std::size_t points = 3 + random() % 40;
-                for (std::size_t i = 0; i < points; ++i) {
-                    const double angle = turn * 6.25 * static_cast<double>(i) / static_cast<double>(points);
-                    const double radius = uniform(4, 9);
-                    builder.add_point(
-                        {middle.x + radius * std::cos(angle), middle.y + radius * std::sin(angle)});
-                }
-                builder.end_contour(random() % 3 != 0);
-            }
-            part.layers.push_back(builder.finish(plane, bottom + (top - bottom) / 2, bottom, top));
-            std::vector<Point2> hatches(2 * (random() % 4));
-            for (Point2& p : hatches)
-                p = {uniform(-50, 50), uniform(-50, 50)};
-            part.hatches.emplace_back(std::move(hatches));
-        }
-        bottom = top;
-    }
-    return all;
-}
-
-LayerFileInfo info_of(const std::vector<LayerPart>& parts) {
-    LayerFileInfo info;
-    info.layers = parts.front().layers.size();
-    info.bottom = parts.front().layers.front().bottom;
-    info.box.add(Point3{-60, -60, info.bottom});
-    info.box.add(Point3{60, 60, parts.front().layers.back().top});
-    info.parts.clear();
-    for (std::size_t i = 0; i < parts.size(); ++i)
-        info.parts.push_back({.label = "part \"" + std::to_string(i) + "\" <&", .box = info.box});
-    return info;
-}
-
 // What a file of this resolution can say of a layer.
 Layer kept(const Layer& layer, const Resolution& of) {
     LayerBuilder builder;
@@ -131,36 +80,15 @@ Layer kept(const Layer& layer, const Resolution& of) {
     return builder.finish(layer.index, layer.z, layer.bottom, layer.top);
 }
 
-std::string written(const char* format, const std::vector<LayerPart>& parts,
-                    std::vector<std::string>* warnings = nullptr, PlaneRule rule = PlaneRule::section_above) {
-    const TemporaryFolder folder;
-    LayerFileInfo info = info_of(parts);
-    info.rule = rule;
-    LayerWriteOptions options;
-    options.page.viewer = "<!--lamella-data-->";
-    const PlaneSource source = source_of(parts);
-    std::vector<Plane> planes;
-    for (std::size_t i = 0; i < info.layers; ++i)
-        planes.push_back(source.plane(i));
-    std::vector<std::string> told =
-        write_layers(folder.file("out"), layer_format(format, ""), planes, info, options);
-    if (warnings != nullptr)
-        *warnings = std::move(told);
-    return file_bytes(folder.file("out"));
-}
-
 LayerFile read(std::string_view bytes) {
-    // Exactly as long as the bytes, so that a sanitizer sees one byte too far.
-    const auto copy = std::make_unique<std::byte[]>(bytes.size());
-    std::memcpy(copy.get(), bytes.data(), bytes.size());
-    return read_layers(std::span(copy.get(), bytes.size()), "test", {}, {.threads = 1});
+    return test::read_exactly(bytes, "test");
 }
 
 TEST(SliceFormats, ComeBackAtTheirResolution) {
     for (const Resolution& format : readable()) {
         for (const std::size_t parts : {1U, 3U}) {
-            const auto original = random_parts(7, parts, 12);
-            const LayerFile back = read(written(format.format, original));
+            const auto original = test::random_parts(7, parts, 12);
+            const LayerFile back = read(test::layer_bytes(format.format, original));
             const std::vector<LayerPart> back_parts = back.in_memory();
             EXPECT_EQ(back.format, format.format);
             for (const std::string& warning : back.warnings)
@@ -199,36 +127,37 @@ TEST(SliceFormats, ComeBackAtTheirResolution) {
 }
 
 TEST(SliceFormats, AreReadWithTheRoundingThatTheyAreWrittenWith) {
-    const auto original = random_parts(3, 1, 2);
+    const auto original = test::random_parts(3, 1, 2);
     for (const Resolution& format : readable())
-        EXPECT_TRUE(read(written(format.format, original)).rounding ==
+        EXPECT_TRUE(read(test::layer_bytes(format.format, original)).rounding ==
                     layer_format(format.format, "").rounding)
             << format.format;
 }
 
 TEST(SliceFormats, KeepTheRuleOfThePlaneWhereTheyKeepTheCut) {
-    const auto original = random_parts(3, 2, 2);
+    const auto original = test::random_parts(3, 2, 2);
     for (const Resolution& format : readable()) {
         const std::string_view name = format.format;
         const bool keeps_cuts = name == "json" || name == "npz" || name == "svg";
-        const std::string below = written(format.format, original, nullptr, PlaneRule::section_below);
+        const std::string below =
+            test::layer_bytes(format.format, original, test::info_of(original, PlaneRule::section_below));
         EXPECT_EQ(read(below).rule, keeps_cuts ? PlaneRule::section_below : PlaneRule::section_above) << name;
-        EXPECT_EQ(read(written(format.format, original)).rule, PlaneRule::section_above) << name;
+        EXPECT_EQ(read(test::layer_bytes(format.format, original)).rule, PlaneRule::section_above) << name;
     }
 }
 
 TEST(SliceFormats, KeepTheLabelsOfParts) {
-    const auto parts = random_parts(3, 2, 2);
+    const auto parts = test::random_parts(3, 2, 2);
     for (const char* format : {"svg", "3mf", "json", "npz"}) {
-        const LayerFile back = read(written(format, parts));
+        const LayerFile back = read(test::layer_bytes(format, parts));
         ASSERT_EQ(back.parts.size(), 2U);
         EXPECT_EQ(back.parts[1].label, "part \"1\" <&") << format;
     }
-    EXPECT_EQ(read(written("cli", parts)).parts[1].label, "part _1_ <&");
+    EXPECT_EQ(read(test::layer_bytes("cli", parts)).parts[1].label, "part _1_ <&");
 }
 
 TEST(SliceFormats, SayWhatTheyLeaveOut) {
-    const auto parts = random_parts(7, 1, 12);
+    const auto parts = test::random_parts(7, 1, 12);
     std::uint64_t chains = 0;
     const std::uint64_t hatches = source_of(parts).hatch_lines();
     for (const Layer& layer : parts.front().layers)
@@ -239,7 +168,7 @@ TEST(SliceFormats, SayWhatTheyLeaveOut) {
         if (format.directory || format.name.starts_with("sl1")) // whose display is smaller than these
             continue;
         std::vector<std::string> warnings;
-        static_cast<void>(written(std::string(format.name).c_str(), parts, &warnings));
+        static_cast<void>(test::layer_bytes(format.name, parts, test::info_of(parts), &warnings));
         std::string all;
         for (const std::string& warning : warnings)
             all += warning + '\n';
@@ -250,95 +179,6 @@ TEST(SliceFormats, SayWhatTheyLeaveOut) {
         EXPECT_EQ(all.find(std::to_string(chains) + " open contours") != std::string::npos, closed_only)
             << all;
         EXPECT_EQ(all.find(std::to_string(hatches) + " hatch lines") != std::string::npos, no_hatches) << all;
-    }
-}
-
-// Everything that a reader returns, or its error.
-struct Outcome {
-    LayerFile file;
-    std::vector<Plane> planes;
-    std::string error;
-};
-
-Outcome outcome(std::string_view bytes, KeptPlanes kept, unsigned threads) {
-    Outcome outcome;
-    try {
-        outcome.file =
-            read_layers(std::as_bytes(std::span(bytes)), "test", {.kept = kept}, {.threads = threads});
-        for (std::size_t i = 0; i < outcome.file.planes.size(); ++i)
-            outcome.planes.push_back(outcome.file.plane(i));
-    } catch (const Error& error) {
-        outcome.error = error.what();
-    }
-    return outcome;
-}
-
-// The same with layers in memory and without. Returns whether the latter was possible.
-bool expect_same_stream(std::string_view bytes, unsigned threads) {
-    const Outcome held = outcome(bytes, KeptPlanes::all, 1);
-    const Outcome passed = outcome(bytes, KeptPlanes::none, threads);
-    EXPECT_EQ(passed.error, held.error);
-    EXPECT_EQ(passed.file.warnings, held.file.warnings);
-    EXPECT_EQ(passed.file.guess, held.file.guess);
-    EXPECT_EQ(passed.file.rounding, held.file.rounding);
-    EXPECT_EQ(passed.file.parts.size(), held.file.parts.size());
-    EXPECT_EQ(passed.planes.size(), held.planes.size());
-    if (testing::Test::HasFailure())
-        return false;
-    const std::vector<LayerPart> parts =
-        held.error.empty() ? held.file.in_memory() : std::vector<LayerPart>();
-    for (std::size_t i = 0; i < held.file.parts.size(); ++i) {
-        const PartInfo& part = held.file.parts[i];
-        EXPECT_EQ(passed.file.parts[i].label, part.label);
-        EXPECT_EQ(passed.file.parts[i].exposure.has_value(), part.exposure.has_value());
-        std::uint64_t hatch_lines = 0;
-        for (const PointArray& hatches : parts[i].hatches)
-            hatch_lines += hatches.size() / 2;
-        const Box3 box = part_box(parts[i].layers, parts[i].hatches);
-        for (const LayerFile* const file : {&passed.file, &held.file}) {
-            EXPECT_EQ(file->parts[i].hatch_lines, hatch_lines);
-            EXPECT_EQ(file->parts[i].box, box);
-        }
-    }
-    for (std::size_t i = 0; i < held.planes.size(); ++i) {
-        EXPECT_EQ(content_hash(passed.planes[i]), content_hash(held.planes[i])) << i;
-        for (std::size_t part = 0; part < held.file.parts.size(); ++part) {
-            const Layer& one = passed.planes[i].polylines[part];
-            const Layer& other = held.planes[i].polylines[part];
-            EXPECT_EQ(std::tie(one.index, one.z, one.bottom, one.top),
-                      std::tie(other.index, other.z, other.bottom, other.top));
-        }
-        const Layer& plane = passed.file.planes[i];
-        const Layer& other = held.file.planes[i];
-        EXPECT_EQ(std::tie(plane.index, plane.z, plane.bottom, plane.top),
-                  std::tie(other.index, other.z, other.bottom, other.top));
-    }
-    return passed.file.plane_bytes > 0;
-}
-
-// An input error, or layers in normal form.
-void expect_harmless(std::string_view bytes) {
-    expect_same_stream(bytes, 1);
-    try {
-        const LayerFile file = read(bytes);
-        const std::vector<LayerPart> parts = file.in_memory();
-        ASSERT_FALSE(file.parts.empty());
-        for (const LayerPart& part : parts) {
-            ASSERT_EQ(part.layers.size(), parts.front().layers.size());
-            for (const Layer& layer : part.layers)
-                ASSERT_TRUE(in_normal_form(layer));
-        }
-    } catch (const Error& error) {
-        ASSERT_EQ(error.kind(), ErrorKind::input) << error.what();
-        ASSERT_EQ(std::string(error.what()).find('\n'), std::string::npos) << error.what();
-    }
-}
-
-TEST(SliceFormats, AreTheSameWhereLayersAreParsedWhenTheyAreNeeded) {
-    for (const Resolution& format : readable()) {
-        const std::string bytes = written(format.format, random_parts(9, format.parts ? 3 : 1, 400));
-        for (const unsigned threads : test::thread_counts())
-            EXPECT_TRUE(expect_same_stream(bytes, threads)) << format.format;
     }
 }
 
@@ -377,7 +217,7 @@ constexpr std::size_t many_planes = 600;
 constexpr std::size_t no_plane = many_planes;
 
 LayerFile without_layers(CountedPlanes& planes, std::size_t fail_at) {
-    const std::string bytes = written("cli", random_parts(9, 1, many_planes));
+    const std::string bytes = test::layer_bytes("cli", test::random_parts(9, 1, many_planes));
     return planes.counted(
         read_layers(std::as_bytes(std::span(bytes)), "test.cli", {.kept = KeptPlanes::none}), fail_at);
 }
@@ -415,30 +255,6 @@ TEST(SliceFormats, LeaveNoOutputIfAPlaneCannotBeParsedAgain) {
                                                {.threads = 3})),
                  Error);
     EXPECT_FALSE(std::filesystem::exists(folder.file("job.cli")));
-}
-
-TEST(SliceFormats, TruncatedFilesAreErrorsOrLessLayers) {
-    const auto parts = random_parts(5, 2, 3);
-    for (const Resolution& format : readable()) {
-        const std::string bytes = written(format.format, parts);
-        for (std::size_t size = 1; size<bytes.size(); size += bytes.size()> 8000 ? 7 : 1)
-            expect_harmless(std::string_view(bytes).substr(0, size));
-    }
-}
-
-TEST(SliceFormats, ChangedBytesAreErrorsOrOtherLayers) {
-    const auto parts = random_parts(5, 2, 3);
-    std::mt19937_64 random(11);
-    for (const Resolution& format : readable()) {
-        const std::string bytes = written(format.format, parts);
-        for (int i = 0; i < 2000; ++i) {
-            std::string changed = bytes;
-            const std::size_t changes = 1 + random() % 4;
-            for (std::size_t k = 0; k < changes; ++k)
-                changed[random() % changed.size()] = static_cast<char>(random() % 4 == 0 ? 0xFF : random());
-            expect_harmless(changed);
-        }
-    }
 }
 
 TEST(SliceFormats, SamplesOfOthersHaveTheirAreas) {

@@ -3,10 +3,13 @@
 // Common Layer Interface files made by hand, and reading them.
 
 #include "lamella/contour/layer.hpp"
+#include "lamella/contour/measure.hpp"
+#include "lamella/contour/normal_form.hpp"
 #include "lamella/core/error.hpp"
 #include "lamella/read/layer_file.hpp"
 
 #include "fixtures/expect_error.hpp"
+#include "fixtures/layer_outcome.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -15,7 +18,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
-#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
@@ -24,10 +26,7 @@
 namespace lamella::common_layer_reading {
 
 inline LayerFile read(const std::string& bytes) {
-    // Exactly as long as the bytes, so that a sanitizer sees one byte too far.
-    const auto copy = std::make_unique<std::byte[]>(bytes.size());
-    std::memcpy(copy.get(), bytes.data(), bytes.size());
-    return read_layers(std::span(copy.get(), bytes.size()), "test.cli");
+    return test::read_exactly(bytes, "test.cli");
 }
 
 inline std::string error_of(const std::string& bytes) {

@@ -10,7 +10,6 @@
 
 #include <cstring>
 #include <filesystem>
-#include <random>
 
 namespace lamella::common_layer_reading {
 namespace {
@@ -155,34 +154,6 @@ TEST(ReadCommonLayer, MorePartsThanCanBeMeantAreRefused) {
     for (int i = 0; i < 3000; ++i)
         geometry += u16(129, i, 1, 0);
     expect_error(binary(geometry), "3000 parts on");
-}
-
-TEST(ReadCommonLayer, EveryTruncatedFileIsAnErrorOrFewerContours) {
-    for (const std::string& whole : {ascii(ring), binary(long_ring), binary(short_ring)}) {
-        for (std::size_t n = 1; n < whole.size(); ++n) {
-            try {
-                EXPECT_LE(read(whole.substr(0, n)).in_memory().at(0).layers.size(), 2U);
-            } catch (const Error& error) {
-                EXPECT_EQ(error.kind(), ErrorKind::input) << error.what();
-            }
-        }
-    }
-}
-
-TEST(ReadCommonLayer, MutatedFilesNeverCrash) {
-    std::mt19937 random(7);
-    for (const std::string& whole : {ascii(ring), binary(long_ring), binary(short_ring)}) {
-        for (int round = 0; round < 1500; ++round) {
-            std::string bytes = whole;
-            for (int change = 0; change < 3; ++change)
-                bytes[random() % bytes.size()] = static_cast<char>(random());
-            try {
-                static_cast<void>(read(bytes));
-            } catch (const Error& error) {
-                EXPECT_EQ(error.kind(), ErrorKind::input) << error.what();
-            }
-        }
-    }
 }
 
 TEST(ReadCommonLayer, PublishedSamplesHaveTheirArea) {

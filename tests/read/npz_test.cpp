@@ -1,8 +1,8 @@
-#include "lamella/contour/exposure.hpp"
 #include "lamella/read/layer_file.hpp"
 
 #include "container/zip_bytes.hpp"
 #include "fixtures/expect_error.hpp"
+#include "fixtures/layer_outcome.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -115,24 +115,11 @@ TEST(ReadNpz, GivesLayersThatComeInAnyOrderAlsoIfTheyAreNotInMemory) {
                                        {"hatches", {"<f8", "4, 2, 2", lengths(ends)}},
                                        {"hatch_layer", {"<i8", "4,", numbers({2, 2, 1, 2})}},
                                        {"hatch_part", {"<i8", "4,", numbers({0, 1, 0, 1})}}});
-    const auto read = [&](KeptPlanes kept) {
-        return read_layers(std::as_bytes(std::span(bytes)), "test.npz", {.kept = kept});
-    };
-    const LayerFile held = read(KeptPlanes::all);
-    const std::vector<LayerPart> held_parts = held.in_memory();
-    EXPECT_EQ(held_parts.at(0).layers.at(2).contours(), 2U);
-    EXPECT_EQ(held_parts.at(1).hatches_of(2).size(), 4U);
-    const LayerFile file = read(KeptPlanes::none);
-    ASSERT_GT(file.plane_bytes, 0U);
-    EXPECT_EQ(file.parts[0].hatch_lines, 2U);
-    EXPECT_EQ(file.parts[1].hatch_lines, 2U);
-    EXPECT_EQ(file.largest_coordinate, 44);
-    EXPECT_EQ(file.largest_hatch_coordinate, 9);
-    for (std::size_t i = 0; i < 4; ++i) {
-        EXPECT_EQ(file.contents[i].points, held.contents[i].points) << i;
-        EXPECT_EQ(file.contents[i].hatch_lines, held.contents[i].hatch_lines) << i;
-        EXPECT_EQ(content_hash(file.plane(i)), content_hash(held.plane(i))) << i;
-    }
+    test::expect_same_layers(bytes);
+    const std::vector<LayerPart> parts = test::read_exactly(bytes, "test.npz").in_memory();
+    EXPECT_EQ(parts.at(0).layers.at(2).contours(), 2U);
+    EXPECT_EQ(parts.at(0).hatches_of(2).size(), 2U);
+    EXPECT_EQ(parts.at(1).hatches_of(2).size(), 4U);
 }
 
 } // namespace

@@ -1,18 +1,15 @@
-#include "lamella/contour/exposure.hpp"
 #include "lamella/contour/measure.hpp"
-#include "lamella/contour/normal_form.hpp"
-#include "lamella/contour/rounding.hpp"
 #include "lamella/read/layer_file.hpp"
 #include "lamella/write/layer_writer.hpp"
 
 #include "container/zip_writer.hpp"
 #include "fixtures/expect_error.hpp"
+#include "fixtures/layer_outcome.hpp"
 #include "fixtures/layers.hpp"
 #include "temporary_folder.hpp"
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -49,22 +46,25 @@ std::string object(int id, int stack) {
            std::to_string(stack) + "\"/>";
 }
 
-LayerFile read(const std::string& root, const std::string& other = "", unsigned threads = 0,
-               const LayerReadOptions& options = {}) {
-    const TemporaryFolder folder;
-    ZipWriter zip(folder.file("a.3mf"));
+void write_package(const std::string& path, const std::string& root, const std::string& other) {
+    ZipWriter zip(path);
     zip.add("3D/3dmodel.model", root, ZipMethod::deflated);
     if (!other.empty())
         zip.add("2D/other.model", other);
     zip.finish();
+}
+
+LayerFile read(const std::string& root, const std::string& other = "", unsigned threads = 0,
+               const LayerReadOptions& options = {}) {
+    const TemporaryFolder folder;
+    write_package(folder.file("a.3mf"), root, other);
     return read_layers(folder.file("a.3mf"), options, {.threads = threads});
 }
 
-std::vector<std::uint64_t> hashes(const LayerPart& part) {
-    std::vector<std::uint64_t> hashes;
-    for (const Layer& layer : part.layers)
-        hashes.push_back(content_hash(layer));
-    return hashes;
+void expect_same_layers(const std::string& root, const std::string& other = "") {
+    const TemporaryFolder folder;
+    write_package(folder.file("a.3mf"), root, other);
+    test::expect_same_layers(file_bytes(folder.file("a.3mf")));
 }
 
 std::string error_of(const std::string& root, const std::string& other = "") {
@@ -237,52 +237,7 @@ TEST(ReadSlices3mf, ReferencesAreReadAlikeByAnyNumberOfThreads) {
     EXPECT_EQ(one.warnings, (std::vector<std::string>{"3 contours are open (first at line 1000)",
                                                       "6 contours are open (first at line 1000)"}));
     ASSERT_EQ(one.parts.size(), 4U);
-    const std::vector<LayerPart> parts = one.in_memory();
-    for (const unsigned threads : {2U, 3U, 7U, 16U}) {
-        const LayerFile many = read(root, other, threads);
-        const std::vector<LayerPart> many_parts = many.in_memory();
-        EXPECT_EQ(many.warnings, one.warnings);
-        for (std::size_t part = 0; part < 4; ++part)
-            EXPECT_EQ(hashes(many_parts[part]), hashes(parts[part])) << threads << " threads";
-    }
-}
-
-/// Expects that a file whose layers are not in memory has the same contents as one whose layers are.
-void expect_same_stream(const std::string& root, const std::string& other = "") {
-    const LayerFile held = read(root, other, 1);
-    const std::vector<LayerPart> held_parts = held.in_memory();
-    for (const unsigned threads : {1U, 2U, 7U}) {
-        const LayerFile file = read(root, other, threads, {.kept = KeptPlanes::none});
-        ASSERT_GT(file.plane_bytes, 0U);
-        EXPECT_EQ(file.warnings, held.warnings);
-        ASSERT_EQ(file.parts.size(), held.parts.size());
-        double largest = 0;
-        for (std::size_t i = 0; i < file.parts.size(); ++i) {
-            EXPECT_EQ(file.parts[i].label, held.parts[i].label);
-            EXPECT_EQ(file.parts[i].support, held.parts[i].support);
-            EXPECT_EQ(file.parts[i].hatch_lines, 0U);
-            const Box3 box = part_box(held_parts[i].layers);
-            EXPECT_EQ(file.parts[i].box.empty(), box.empty());
-            if (!box.empty()) {
-                EXPECT_EQ(file.parts[i].box.min, box.min);
-                EXPECT_EQ(file.parts[i].box.max, box.max);
-            }
-            for (const Layer& layer : held_parts[i].layers)
-                largest = std::max(largest, largest_coordinate(layer.points.span()));
-        }
-        EXPECT_EQ(file.largest_coordinate, largest);
-        EXPECT_EQ(file.largest_hatch_coordinate, 0);
-        ASSERT_EQ(file.planes.size(), held.planes.size());
-        ASSERT_EQ(file.contents.size(), held.contents.size());
-        for (std::size_t i = 0; i < file.planes.size(); ++i) {
-            EXPECT_EQ(file.contents[i].points, held.contents[i].points) << i;
-            EXPECT_EQ(file.contents[i].hatch_lines, 0U);
-            ASSERT_EQ(content_hash(file.plane(i)), content_hash(held.plane(i))) << i;
-            EXPECT_EQ(file.planes[i].z, held.planes[i].z);
-            EXPECT_EQ(file.planes[i].bottom, held.planes[i].bottom);
-            EXPECT_EQ(file.planes[i].top, held.planes[i].top);
-        }
-    }
+    expect_same_layers(root, other);
 }
 
 TEST(ReadSlices3mf, LayersThatAreNotInMemoryAreTheSame) {
@@ -304,14 +259,14 @@ TEST(ReadSlices3mf, LayersThatAreNotInMemoryAreTheSame) {
               "<item objectid=\"2\" transform=\"-1.1 0 0 0 1 0 0 0 1 -20.1 0.3 0.25\"/>"
               "<item objectid=\"4\" transform=\"0.6 0.8 0 0.8 -0.6 0 0 0 1 3.3 0.1 -2\"/>",
               "inch");
-    expect_same_stream(root, model(stack(7, slices), ""));
-    expect_same_stream(model(stack(1, "<t:slice ztop=\"1\"/>") + object(2, 1), "<item objectid=\"2\"/>"));
+    expect_same_layers(root, model(stack(7, slices), ""));
+    expect_same_layers(model(stack(1, "<t:slice ztop=\"1\"/>") + object(2, 1), "<item objectid=\"2\"/>"));
     EXPECT_EQ(read(root, model(stack(7, slices), ""), 2, {.kept = KeptPlanes::if_faster}).plane_bytes, 0U);
 }
 
 TEST(ReadSlices3mf, APolygonBehindItsSliceIsInTheStreamToo) {
     const std::string behind = "<t:polygon startv=\"0\"><t:segment v2=\"2\"/></t:polygon>";
-    expect_same_stream(model(stack(1, slice("1") + behind + slice("2") + slice("3") + behind) + object(2, 1),
+    expect_same_layers(model(stack(1, slice("1") + behind + slice("2") + slice("3") + behind) + object(2, 1),
                              "<item objectid=\"2\"/>"));
 }
 

@@ -6,21 +6,16 @@
 #include "lamella/read/layer_file.hpp"
 
 #include "fixtures/expect_error.hpp"
+#include "fixtures/layer_outcome.hpp"
 
 #include <gtest/gtest.h>
 
-#include <cstddef>
-#include <cstring>
-#include <memory>
-#include <span>
 #include <string>
 
 namespace lamella::svg_files {
 
 inline LayerFile read(const std::string& bytes) {
-    const auto copy = std::make_unique<std::byte[]>(bytes.size());
-    std::memcpy(copy.get(), bytes.data(), bytes.size());
-    return read_layers(std::span(copy.get(), bytes.size()), "test.svg");
+    return test::read_exactly(bytes, "test.svg");
 }
 
 inline void expect_error(const std::string& bytes, const std::string& part) {
