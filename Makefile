@@ -6,7 +6,7 @@ JOBS := $(shell nproc)
 # One more than the number of processors: some tests mostly wait.
 CTEST := ctest --output-on-failure --no-tests=error --parallel $(shell expr $(JOBS) + 1)
 VERSION := $(shell sed -n 's/^\#define LAMELLA_VERSION "\(.*\)"/\1/p' include/lamella/core/version.hpp)
-MODULES := core mesh parts contour slicing polygon scan findings system container read raster write pipeline c
+MODULES := core mesh parts contour slicing polygon scan findings system container raster meshes slices inputs jobs c
 blank := $(subst ,, )
 SOURCES = $(shell find app bench examples include parts python src tests viewer web -name '*.[ch]pp' 2>/dev/null)
 
@@ -68,11 +68,11 @@ packages-ci:
 ci-asan: packages-ci
 	cmake --preset asan-ubsan
 	cmake --build build-asan --target lamella_app lamella_processor_test
-	$(call suites,build-asan,container read fuzz,processor input)
+	$(call suites,build-asan,container meshes slices inputs fuzz,processor input)
 
 ci-tsan: packages-ci
 	cmake --preset tsan
-	$(call suites,build-tsan,slicing pipeline)
+	$(call suites,build-tsan,slicing jobs)
 
 # Optimised less, since that compiles in half the time. The output is compared with that of build/lamella.
 ci-windows: packages-windows

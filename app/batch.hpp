@@ -3,7 +3,7 @@
 // lamella slice --batch: many files, each sliced as a separate job.
 
 #include "lamella/core/execution.hpp"
-#include "lamella/pipeline/file_result.hpp"
+#include "lamella/jobs/file_result.hpp"
 
 #include "command.hpp"
 

@@ -2,7 +2,7 @@
 
 #include "lamella/core/error.hpp"
 #include "lamella/core/printable.hpp"
-#include "lamella/read/mesh_file.hpp"
+#include "lamella/inputs/read_file.hpp"
 
 #include "names.hpp"
 #include "numbers.hpp"

@@ -1,7 +1,7 @@
 #include "lamella/core/error.hpp"
-#include "lamella/pipeline/compare_files.hpp"
+#include "lamella/inputs/read_file.hpp"
+#include "lamella/jobs/compare_files.hpp"
 #include "lamella/polygon/compare.hpp"
-#include "lamella/read/layer_file.hpp"
 
 #include "command_line.hpp"
 #include "commands.hpp"

@@ -1,8 +1,8 @@
 #include "lamella/contour/layer.hpp"
 #include "lamella/core/error.hpp"
+#include "lamella/inputs/read_file.hpp"
 #include "lamella/polygon/layer_steps.hpp"
-#include "lamella/read/layer_file.hpp"
-#include "lamella/write/layer_writer.hpp"
+#include "lamella/slices/layer_writer.hpp"
 
 #include "command_line.hpp"
 #include "commands.hpp"

@@ -1,10 +1,10 @@
 #include "lamella/contour/exposure.hpp"
 #include "lamella/core/error.hpp"
+#include "lamella/inputs/read_file.hpp"
+#include "lamella/jobs/layer_files.hpp"
 #include "lamella/mesh/diagnose.hpp"
 #include "lamella/mesh/indexed_mesh.hpp"
-#include "lamella/pipeline/layer_files.hpp"
-#include "lamella/read/any_file.hpp"
-#include "lamella/write/layer_page.hpp"
+#include "lamella/slices/layer_page.hpp"
 
 #include "command_line.hpp"
 #include "commands.hpp"

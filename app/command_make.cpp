@@ -1,7 +1,7 @@
 #include "lamella/core/error.hpp"
 #include "lamella/mesh/indexed_mesh.hpp"
-#include "lamella/read/mesh_file.hpp"
-#include "lamella/write/mesh_writer.hpp"
+#include "lamella/meshes/mesh_file.hpp"
+#include "lamella/meshes/mesh_writer.hpp"
 
 #include "command_line.hpp"
 #include "commands.hpp"

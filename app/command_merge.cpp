@@ -1,4 +1,4 @@
-#include "lamella/pipeline/merge.hpp"
+#include "lamella/jobs/merge.hpp"
 
 #include "command_line.hpp"
 #include "commands.hpp"

@@ -1,9 +1,9 @@
 #include "lamella/core/error.hpp"
-#include "lamella/pipeline/plate.hpp"
-#include "lamella/pipeline/slice_file.hpp"
+#include "lamella/jobs/plate.hpp"
+#include "lamella/jobs/slice_file.hpp"
+#include "lamella/slices/layer_writer.hpp"
 #include "lamella/slicing/slice.hpp"
 #include "lamella/system/whole_file.hpp"
-#include "lamella/write/layer_writer.hpp"
 
 #include "batch.hpp"
 #include "batch_files.hpp"

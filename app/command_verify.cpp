@@ -1,8 +1,7 @@
 #include "lamella/core/error.hpp"
-#include "lamella/pipeline/repair_policies.hpp"
-#include "lamella/pipeline/verify.hpp"
-#include "lamella/read/layer_file.hpp"
-#include "lamella/read/mesh_file.hpp"
+#include "lamella/inputs/read_file.hpp"
+#include "lamella/jobs/repair_policies.hpp"
+#include "lamella/jobs/verify.hpp"
 
 #include "command_line.hpp"
 #include "commands.hpp"

@@ -2,7 +2,7 @@
 
 // The commands of the program, one source each.
 
-#include "lamella/pipeline/processes.hpp"
+#include "lamella/jobs/processes.hpp"
 
 #include "command.hpp"
 

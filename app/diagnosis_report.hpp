@@ -2,9 +2,9 @@
 
 // Report of `lamella info` about a mesh: size, shells, and defects with their locations.
 
+#include "lamella/jobs/plate.hpp"
 #include "lamella/mesh/diagnose.hpp"
-#include "lamella/pipeline/plate.hpp"
-#include "lamella/read/mesh_file.hpp"
+#include "lamella/meshes/mesh_file.hpp"
 
 #include "messages.hpp"
 

@@ -3,9 +3,9 @@
 // Figures of meshes, layers and runs. Each figure is defined once; JSON, lines for people and pages are made
 // from this definition.
 
+#include "lamella/jobs/file_job.hpp"
+#include "lamella/jobs/file_result.hpp"
 #include "lamella/mesh/self_intersections.hpp"
-#include "lamella/pipeline/file_job.hpp"
-#include "lamella/pipeline/file_result.hpp"
 
 #include "command.hpp"
 #include "messages.hpp"

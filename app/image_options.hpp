@@ -2,7 +2,7 @@
 
 // Options of image formats.
 
-#include "lamella/write/layer_writer.hpp"
+#include "lamella/slices/layer_writer.hpp"
 
 #include "command.hpp"
 

@@ -1,8 +1,8 @@
 #include "layer_file.hpp"
 
 #include "lamella/core/error.hpp"
-#include "lamella/pipeline/layer_files.hpp"
-#include "lamella/pipeline/layer_findings.hpp"
+#include "lamella/jobs/layer_files.hpp"
+#include "lamella/jobs/layer_findings.hpp"
 #include "lamella/polygon/inverted_rings.hpp"
 
 #include "numbers.hpp"

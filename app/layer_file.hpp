@@ -3,8 +3,8 @@
 // Layers that were read from a slice file: messages about them, and steps before they are written again.
 
 #include "lamella/polygon/layer_steps.hpp"
-#include "lamella/read/layer_file.hpp"
-#include "lamella/write/layer_writer.hpp"
+#include "lamella/slices/layer_file.hpp"
+#include "lamella/slices/layer_writer.hpp"
 
 #include "messages.hpp"
 

@@ -1,8 +1,8 @@
 #include "manual.hpp"
 
 #include "lamella/core/version.hpp"
+#include "lamella/slices/layer_writer.hpp"
 #include "lamella/slicing/slice.hpp"
-#include "lamella/write/layer_writer.hpp"
 
 #include "help_text.hpp"
 

@@ -2,7 +2,7 @@
 
 // Processes of an MPI job. Only the source of this header includes MPI.
 
-#include "lamella/pipeline/processes.hpp"
+#include "lamella/jobs/processes.hpp"
 
 #include <chrono>
 #include <cstddef>

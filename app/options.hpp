@@ -4,11 +4,11 @@
 
 #include "lamella/core/execution.hpp"
 #include "lamella/mesh/transform.hpp"
+#include "lamella/meshes/mesh_file.hpp"
 #include "lamella/polygon/layer_steps.hpp"
-#include "lamella/read/layer_file.hpp"
-#include "lamella/read/mesh_file.hpp"
+#include "lamella/slices/layer_file.hpp"
+#include "lamella/slices/layer_writer.hpp"
 #include "lamella/slicing/plan.hpp"
-#include "lamella/write/layer_writer.hpp"
 
 #include "command.hpp"
 #include "image_options.hpp"

@@ -2,12 +2,12 @@
 
 // Notes of the program on pages: the source of the part, defects of its mesh, and figures of the run.
 
+#include "lamella/jobs/file_result.hpp"
 #include "lamella/mesh/diagnose.hpp"
 #include "lamella/mesh/inspect.hpp"
-#include "lamella/pipeline/file_result.hpp"
-#include "lamella/read/layer_file.hpp"
-#include "lamella/read/mesh_file.hpp"
-#include "lamella/write/layer_page.hpp"
+#include "lamella/meshes/mesh_file.hpp"
+#include "lamella/slices/layer_file.hpp"
+#include "lamella/slices/layer_page.hpp"
 
 #include <cstddef>
 #include <string>

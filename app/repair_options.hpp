@@ -2,7 +2,7 @@
 
 // Options for repairs of unsound meshes and layers, and reports of the repairs.
 
-#include "lamella/pipeline/file_result.hpp"
+#include "lamella/jobs/file_result.hpp"
 
 #include "command.hpp"
 

@@ -2,8 +2,8 @@
 
 // Warnings of a run.
 
-#include "lamella/pipeline/file_job.hpp"
-#include "lamella/pipeline/file_result.hpp"
+#include "lamella/jobs/file_job.hpp"
+#include "lamella/jobs/file_result.hpp"
 
 #include <span>
 #include <string>

@@ -2,7 +2,7 @@
 
 // The figures of scan vectors.
 
-#include "lamella/pipeline/file_result.hpp"
+#include "lamella/jobs/file_result.hpp"
 
 #include "figures.hpp"
 

@@ -5,8 +5,8 @@
 // docs/scaling.md shows one.
 
 #include "lamella/core/execution.hpp"
-#include "lamella/pipeline/file_job.hpp"
-#include "lamella/pipeline/file_result.hpp"
+#include "lamella/jobs/file_job.hpp"
+#include "lamella/jobs/file_result.hpp"
 
 #include "command.hpp"
 

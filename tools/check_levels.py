@@ -16,8 +16,10 @@ LEVELS = [
     ["core"],
     ["mesh", "contour", "system", "findings"],
     ["slicing", "polygon", "raster", "container"],
-    ["scan", "read", "write"],
-    ["pipeline"],
+    ["scan", "meshes"],
+    ["slices"],
+    ["inputs"],
+    ["jobs"],
     ["c"],
 ]
 
@@ -31,15 +33,16 @@ MODULES = {
     "contour": ["core"],
     "system": ["core"],
     "findings": ["core"],
-    "container": ["core", "system"],
-    "read": ["core", "findings", "system", "container", "mesh", "contour"],
+    "container": ["core", "findings", "system", "contour"],
+    "meshes": ["core", "findings", "system", "container", "mesh", "contour"],
     "slicing": ["core", "mesh", "contour"],  # not container: engines know no formats
     "polygon": ["core", "contour"],  # not mesh: layers of any source
     "raster": ["core", "contour"],  # not container: pixels, not files
     "scan": ["core", "contour", "polygon"],  # not mesh: layers of any source
-    "write": ["core", "findings", "system", "container", "mesh", "contour", "polygon", "raster"],  # not slicing, not read: any layers
-    "c": ["core", "findings", "mesh", "contour", "read", "slicing", "polygon", "write", "pipeline"],  # only what it passes on
-    "pipeline": ["core", "findings", "system", "container", "mesh", "contour", "read", "slicing", "polygon", "raster", "scan", "write"],
+    "slices": ["core", "findings", "system", "container", "mesh", "contour", "polygon", "raster", "meshes"],  # not slicing: any layers
+    "inputs": ["core", "findings", "system", "container", "mesh", "contour", "meshes", "slices"],
+    "jobs": ["core", "findings", "system", "container", "mesh", "contour", "slicing", "polygon", "raster", "scan", "meshes", "slices", "inputs"],
+    "c": ["core", "findings", "mesh", "contour", "slicing", "polygon", "meshes", "slices", "inputs", "jobs"],  # only what it passes on
 }
 
 # Third-party headers of the library. Each may be included by one source (zlib by those that compress and decompress,
@@ -82,6 +85,9 @@ STANDARD = set(
 SYSTEM = re.compile(r"^((sys|linux|net|netinet|arpa)/.*|(unistd|fcntl|sched|pthread|poll|signal|spawn|dirent|dlfcn|"
                     r"malloc|errno|limits|stdlib|stdint|windows|winioctl|aclapi|shellapi|psapi|io)(\.h)?)$")
 SYSTEM_MODULE = "src/system/"
+
+# The folder of a module whose headers all sources of the module, and of modules above, may include.
+SHARED_FOLDER = "src/slices/engine"
 
 # Types at namespace level, as headers lay them out.
 TYPE = re.compile(r"^(?:template <[^\n]*>\n)?(?:class|struct|union|enum class) (\w+)(?: final)?(?: : [^{;\n]*)? \{", re.MULTILINE)
@@ -217,7 +223,7 @@ class Architecture:
     def judge_folder(self, name, target):
         """Headers in a folder of a module may be included only there, so engines in different folders are independent."""
         folder = Path(target).parent
-        if target.startswith("src/") and len(folder.parts) > 2 and Path(name).parent != folder:
+        if target.startswith("src/") and len(folder.parts) > 2 and Path(name).parent != folder and folder.as_posix() != SHARED_FOLDER:
             return f"only sources of {folder.as_posix()} may include {target}"
         return None
 

@@ -5,8 +5,8 @@
 #include "program.hpp"
 
 #include "lamella/core/error.hpp"
-#include "lamella/pipeline/plate.hpp"
-#include "lamella/read/any_file.hpp"
+#include "lamella/inputs/read_file.hpp"
+#include "lamella/jobs/plate.hpp"
 
 #include "command_line.hpp"
 #include "commands.hpp"

@@ -8,16 +8,15 @@
 #include "lamella/lamella.hpp"
 
 // Read meshes and layers.
-#include "lamella/read/any_file.hpp"
-#include "lamella/read/layer_file.hpp"
-#include "lamella/read/mesh_file.hpp"
-#include "lamella/read/mesh_input.hpp"
+#include "lamella/inputs/read_file.hpp"
+#include "lamella/meshes/mesh_file.hpp"
+#include "lamella/slices/layer_file.hpp"
 
 // Write layers, meshes and pages; draw images.
+#include "lamella/meshes/mesh_writer.hpp"
 #include "lamella/raster/image.hpp"
-#include "lamella/write/layer_page.hpp"
-#include "lamella/write/layer_writer.hpp"
-#include "lamella/write/mesh_writer.hpp"
+#include "lamella/slices/layer_page.hpp"
+#include "lamella/slices/layer_writer.hpp"
 
 // Hash files, write small files, and remove temporary files when a signal ends the program.
 #include "lamella/container/file_hash.hpp"

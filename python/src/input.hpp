@@ -2,7 +2,7 @@
 
 // Files to read, as Python passes them.
 
-#include "lamella/read/mesh_file.hpp"
+#include "lamella/meshes/mesh_file.hpp"
 
 #include <pybind11/pybind11.h>
 

@@ -1,7 +1,7 @@
 #include "layer_stream.hpp"
 
 #include "lamella/core/error.hpp"
-#include "lamella/pipeline/slice_file.hpp"
+#include "lamella/jobs/slice_file.hpp"
 
 #include "gil_release.hpp"
 

@@ -4,8 +4,8 @@
 
 #include "lamella/contour/close_gaps.hpp"
 #include "lamella/core/execution.hpp"
-#include "lamella/pipeline/plate.hpp"
-#include "lamella/pipeline/repair_policies.hpp"
+#include "lamella/jobs/plate.hpp"
+#include "lamella/jobs/repair_policies.hpp"
 #include "lamella/polygon/layer_steps.hpp"
 
 #include <cstdint>

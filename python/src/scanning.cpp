@@ -1,7 +1,7 @@
 #include "lamella/contour/exposure.hpp"
 #include "lamella/core/error.hpp"
 #include "lamella/core/layer_limits.hpp"
-#include "lamella/pipeline/layer_findings.hpp"
+#include "lamella/jobs/layer_findings.hpp"
 #include "lamella/scan/scan.hpp"
 #include "lamella/scan/strategy.hpp"
 

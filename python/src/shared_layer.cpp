@@ -3,7 +3,7 @@
 #include "lamella/contour/normal_form.hpp"
 #include "lamella/core/error.hpp"
 #include "lamella/polygon/compare.hpp"
-#include "lamella/write/layer_writer.hpp"
+#include "lamella/slices/layer_writer.hpp"
 
 #include "gil_release.hpp"
 

@@ -1,10 +1,11 @@
 #include "source_mesh.hpp"
 
 #include "lamella/core/error.hpp"
+#include "lamella/inputs/read_file.hpp"
+#include "lamella/jobs/plate.hpp"
+#include "lamella/jobs/repair_policies.hpp"
 #include "lamella/mesh/diagnose.hpp"
 #include "lamella/mesh/inspect.hpp"
-#include "lamella/pipeline/plate.hpp"
-#include "lamella/pipeline/repair_policies.hpp"
 #include "lamella/slicing/slice.hpp"
 
 #include "arrays.hpp"

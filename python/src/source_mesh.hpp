@@ -2,11 +2,11 @@
 
 #include "lamella/core/execution.hpp"
 #include "lamella/core/point.hpp"
+#include "lamella/jobs/plate.hpp"
 #include "lamella/mesh/indexed_mesh.hpp"
 #include "lamella/mesh/mesh.hpp"
 #include "lamella/mesh/transform.hpp"
-#include "lamella/pipeline/plate.hpp"
-#include "lamella/read/mesh_file.hpp"
+#include "lamella/meshes/mesh_file.hpp"
 
 #include "made.hpp"
 #include "repairs.hpp"

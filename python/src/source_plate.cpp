@@ -1,7 +1,7 @@
 #include "source_plate.hpp"
 
 #include "lamella/core/error.hpp"
-#include "lamella/read/mesh_file.hpp"
+#include "lamella/meshes/mesh_file.hpp"
 
 #include "bindings.hpp"
 #include "placing.hpp"

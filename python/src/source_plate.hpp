@@ -1,8 +1,8 @@
 #pragma once
 
+#include "lamella/jobs/plate.hpp"
+#include "lamella/jobs/repair_policies.hpp"
 #include "lamella/mesh/transform.hpp"
-#include "lamella/pipeline/plate.hpp"
-#include "lamella/pipeline/repair_policies.hpp"
 
 #include "repairs.hpp"
 #include "source_mesh.hpp"

@@ -1,12 +1,12 @@
 #include "lamella/c/lamella.h"
 #include "lamella/contour/close_gaps.hpp"
 #include "lamella/contour/normal_form.hpp"
+#include "lamella/meshes/mesh_writer.hpp"
 #include "lamella/polygon/boolean.hpp"
 #include "lamella/polygon/offset.hpp"
 #include "lamella/slicing/layering.hpp"
 #include "lamella/slicing/plan.hpp"
 #include "lamella/slicing/slice.hpp"
-#include "lamella/write/mesh_writer.hpp"
 
 #include "fixtures/layers.hpp"
 #include "parts/shapes.hpp"

@@ -84,7 +84,7 @@ class Documentation(unittest.TestCase):
         tests = [path.name for path in ROOT.glob("tests/**/*_test.cpp")]
         untested = [str(path.relative_to(ROOT)) for path in sorted(ROOT.glob("src/**/*.cpp"))
                     if path.parts[-2] not in ("posix", "windows", "none", "program")
-                    and not any(re.fullmatch(rf"{path.stem}[a-z_]*_test\.cpp", name) for name in tests)]
+                    and not any(re.fullmatch(rf"{re.sub('_(reader|writer)$', '', path.stem)}[a-z0-9_]*_test\.cpp", name) for name in tests)]
         page = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
         listed = re.findall(r"^\| `(src/[^`]+)` \| \S", page, re.MULTILINE)
         self.assertEqual(listed, untested)
@@ -92,7 +92,7 @@ class Documentation(unittest.TestCase):
     def test_the_types_of_the_npm_package_list_all_engines_and_formats(self):
         types = (ROOT / "web/package/api.d.ts").read_text(encoding="utf-8")
         for union, table, row in [(r"engine\?: ([^;]*);", "slicing/engines.cpp", r'Engine\{"([\w-]+)"'),
-                                  (r"type FileFormat =([^;]*);", "write/layer_writer.cpp", r'LayerFormat\{\.name = "([\w-]+)"')]:
+                                  (r"type FileFormat =([^;]*);", "slices/engine/slice_formats.cpp", r'\.writer = \{\.name = "([\w-]+)"')]:
             names = re.findall(row, (ROOT / "src" / table).read_text(encoding="utf-8"))
             self.assertGreater(len(names), 3)
             listed = re.findall(r"'([\w-]+)'", re.search(union, types)[1])
@@ -134,7 +134,7 @@ class Documentation(unittest.TestCase):
                          {str(path.relative_to(ROOT / "include")) for path in ROOT.glob("include/**/*.hpp")})
         engine = {"core", "mesh", "contour", "slicing", "polygon", "scan"}
         for door, expected in [("lamella/lamella.hpp", engine),
-                               ("lamella/formats.hpp", engine | {"findings", "read", "write", "raster", "container", "system"})]:
+                               ("lamella/formats.hpp", engine | {"findings", "meshes", "slices", "inputs", "raster", "container", "system"})]:
             modules = {header.split("/")[1] for header in self.included_by(door) if header.count("/") > 1}
             self.assertEqual(modules, expected)
 

@@ -55,6 +55,16 @@ struct LayerPart {
     }
 };
 
+/// The planes of a slice file that stay in memory. All others are parsed again when they are needed; the
+/// bytes of the file then stay in memory, or in a temporary file if they are large.
+enum class KeptPlanes : std::uint8_t {
+    all,
+    /// Those of text formats (ASCII Common Layer Interface, SVG, JSON, 3MF), which take long to parse, and
+    /// only if `max_memory` is at least eight times the size of the text.
+    if_faster,
+    none,
+};
+
 /// Takes a plane of a source, at a position; see PlaneSource::run.
 using PlaneSink = std::function<Commit(std::size_t position, Plane plane)>;
 using PlaneVisitor = std::function<void(std::size_t position, Plane plane, unsigned worker)>;

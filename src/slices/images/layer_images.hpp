@@ -1,0 +1,48 @@
+#pragma once
+
+// Layers as PNG files, in memory.
+
+#include "lamella/contour/layer.hpp"
+#include "lamella/findings/findings.hpp"
+#include "lamella/raster/image.hpp"
+
+#include "container/byte_buffer.hpp"
+#include "container/zip_writer.hpp"
+
+#include <cstdint>
+#include <memory>
+#include <span>
+
+namespace lamella {
+
+struct LayerImage {
+    std::shared_ptr<const ByteBuffer> file;
+    std::uint32_t crc = 0; ///< of the file
+    RasterAreas areas = {};
+
+    [[nodiscard]] ZipChunk in_zip() const { return {file->view(), file->view().size(), crc}; }
+};
+
+/// Returns the material that the image of a layer at z does not show because it is too thin for the pixels.
+/// Corners and the edges of bodies lose a little everywhere, so the count is 0 unless the layer loses more
+/// than a thousandth of its area, and more than a pixel.
+[[nodiscard]] Finding unseen_material(double z, const RasterAreas& areas, double pixel_mm2);
+
+/// Makes images with the same grid and options. May be used by any number of threads at once.
+class LayerImages {
+  public:
+    LayerImages(const PixelGrid& grid, const RasterOptions& options);
+
+    /// Draws all parts into one image.
+    [[nodiscard]] LayerImage image(std::span<const Layer> all) const;
+
+    [[nodiscard]] const PixelGrid& grid() const noexcept { return grid_; }
+    [[nodiscard]] const RasterOptions& options() const noexcept { return options_; }
+
+  private:
+    PixelGrid grid_;
+    RasterOptions options_;
+    std::shared_ptr<BufferPool> buffers_ = std::make_shared<BufferPool>();
+};
+
+} // namespace lamella
