@@ -171,6 +171,8 @@ class Architecture:
         return None
 
     def judge_foreign(self, name, header):
+        if header.startswith("lamella/"):
+            return f"<{header}> is no header of this project"
         if name not in THIRD_PARTY_OF_CONSUMERS.get(header, name).split():
             return f"<{header}> may be visible in {THIRD_PARTY_OF_CONSUMERS[header]} only"
         if header in STANDARD or not name.startswith(("include/", "src/")):

@@ -4,7 +4,7 @@
 //     stream_areas FILE LAYER_HEIGHT
 
 #include <lamella/core/error.hpp>
-#include <lamella/read/mesh_file.hpp>
+#include <lamella/inputs/read_file.hpp>
 #include <lamella/slicing/plan.hpp>
 #include <lamella/slicing/slice.hpp>
 

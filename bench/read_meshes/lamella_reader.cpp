@@ -1,7 +1,7 @@
 // Reads a mesh file with Lamella and prints the seconds from file to mesh and the triangles, as JSON.
 
 #include <lamella/core/error.hpp>
-#include <lamella/read/mesh_file.hpp>
+#include <lamella/inputs/read_file.hpp>
 
 #include <chrono>
 #include <cstdio>

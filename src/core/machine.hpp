@@ -1,7 +1,7 @@
 #pragma once
 
 // The two resources that the engine requests from the machine: processors and large memory. The build
-// compiles one of two sources: `system/machine.cpp` uses the operating system, `core/plain_machine.cpp` only
+// compiles one of two sources: one in `src/system` uses the operating system, `core/plain_machine.cpp` only
 // the standard library.
 
 #include <cstddef>

@@ -1,7 +1,7 @@
 #pragma once
 
 // The table of formats of mesh input: those that can be read, and others that users often pass instead,
-// including slice files.
+// including slice files; and readers of opened sources.
 
 #include "lamella/core/execution.hpp"
 #include "lamella/inputs/read_file.hpp"
@@ -35,7 +35,7 @@ struct MeshFormatRow {
 
     /// The kind of file, and advice, as the end of a sentence that begins with the file's name.
     std::string_view advice = {};
-    /// The format of a slice file; null for other files.
+    /// The format of a slice file, which then recognises it; null for other files.
     const SliceFormat* slices = nullptr;
 
     ReadMesh* read = nullptr;
@@ -50,7 +50,8 @@ struct MeshFormatRow {
                                                      const MeshReadOptions& options);
 
 /// Returns the format by which a file is read: that of its content if that is recognised, otherwise that of
-/// its name. Throws Error{input} with advice if the file is not a mesh file.
+/// its name, otherwise one that it resembles, otherwise STL. Throws Error{input} that says what the file is,
+/// if it is not a mesh file.
 [[nodiscard]] const MeshFormatRow& mesh_format_of(const ByteSource& source, const MeshReadOptions& options);
 
 /// Opens a file that may contain a mesh (system/byte_source); binary STL is read in windows.

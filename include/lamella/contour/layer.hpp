@@ -124,8 +124,9 @@ struct Plane {
     void append(Plane other);
 };
 
-/// Throws as `check(const Layer&)` does, and Error{usage} if an end of a hatch line is missing, the hatch
-/// lines of a part, or if two parts have different heights or indices. O(points).
+/// Throws as `check(const Layer&)` does. Also throws Error{usage} if `hatches` has not one entry for each
+/// part, if an end of a hatch line is missing or has an impossible coordinate, or if two parts have different
+/// heights or indices. O(points).
 void check(const Plane& plane);
 
 /// Returns a 64-bit hash of the contents in their order. It is the `stack_hash` of the hashes of the parts.

@@ -55,18 +55,20 @@ struct LayerPart {
     }
 };
 
-/// The planes of a slice file that stay in memory. All others are parsed again when they are needed; the
-/// bytes of the file then stay in memory, or in a temporary file if they are large.
+/// Which planes of a slice file stay in memory, if its format can parse single planes again. The others are
+/// parsed again when they are needed; the bytes of the file then stay in memory, or in a temporary file if
+/// they are large.
 enum class KeptPlanes : std::uint8_t {
     all,
-    /// Those of text formats (ASCII Common Layer Interface, SVG, JSON, 3MF), which take long to parse, and
-    /// only if `max_memory` is at least eight times the size of the text.
+    /// Planes of text formats (ASCII Common Layer Interface, SVG, JSON, 3MF), which take long to parse, stay
+    /// if `max_memory` is at least eight times the size of the text.
     if_faster,
     none,
 };
 
 /// Takes a plane of a source, at a position; see PlaneSource::run.
 using PlaneSink = std::function<Commit(std::size_t position, Plane plane)>;
+/// Takes a plane of a source, at a position, on a thread with this number; see PlaneSource::visit.
 using PlaneVisitor = std::function<void(std::size_t position, Plane plane, unsigned worker)>;
 
 /// Planes whose contents are made when they are needed.
@@ -78,16 +80,16 @@ struct PlaneSource {
     Rounding rounding = {};                  ///< of coordinates and heights
     /// The rule by which the layers were cut, as far as it is known.
     PlaneRule rule = PlaneRule::section_above;
-    double largest_coordinate = 0;       ///< largest absolute value of those of contours
-    double largest_hatch_coordinate = 0; ///< of hatch lines
+    double largest_coordinate = 0;       ///< largest absolute value of the coordinates of contours
+    double largest_hatch_coordinate = 0; ///< largest absolute value of the coordinates of hatch lines
 
     std::uint64_t bytes = 0;       ///< memory that the source takes
     std::uint64_t plane_bytes = 0; ///< memory for making the largest plane; 0 if all planes are in memory
     /// Memory that a limit leaves for making planes.
     std::uint64_t spare_bytes = std::numeric_limits<std::uint64_t>::max();
 
-    /// Makes the contours and hatch lines of the plane at this position, for each part; heights may be
-    /// missing. May be called by any number of threads at once.
+    /// Makes the contours and hatch lines of the plane at this position, for each part. It need not set
+    /// heights and indices, which `plane` does. May be called by any number of threads at once.
     std::function<Plane(std::size_t position)> make = {};
 
     /// Returns the contours and hatch lines of all parts on a plane, with its heights. O(contours) if all

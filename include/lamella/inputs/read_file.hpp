@@ -31,7 +31,8 @@ struct ByteSource;
 /// Reads a mesh file; its format is recognised by its content. "-" reads standard input. docs/formats.md
 /// describes the accepted subset of each format.
 ///
-/// The bytes are copied: the file may change during the call and is not needed afterwards. Throws
+/// The bytes are copied, except those of binary STL files of at least 64 KiB, which are read in chunks: the
+/// file may change during the call and is not needed afterwards. Throws
 /// Error{input} if the file becomes shorter while it is copied. A copy of more than a quarter of `max_memory`
 /// is kept in an anonymous temporary file (in $TMPDIR, else /var/tmp, else /tmp), of which the mesh of a
 /// binary STL file is a view; throws Error{output} if the disk is full.

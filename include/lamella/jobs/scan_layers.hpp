@@ -19,13 +19,14 @@ namespace lamella {
 [[nodiscard]] LayerFileInfo with_exposures(const LayerFileInfo& info, const ScanStrategy& strategy);
 
 /// Computes the scan vectors of the layers of all parts and writes them. Existing hatch lines are ignored.
-/// `max_memory`: see layer_limits. Uses as many threads as PlaneSource::for_planes permits. Each
-/// holds the vectors of one plane; layers also wait for their neighbours if skins need them.
+/// `max_memory` is the limit of the whole job (see layer_limits). Uses as many threads as
+/// PlaneSource::for_planes permits. Each thread holds the vectors of one plane; layers also wait for their
+/// neighbours if skins need them.
 ///
 /// Returns the figures that `slice_file` returns with FileJob::scan and `layer_statistics`, without those of
-/// meshes. All `findings` are those of file 0. Throws the errors of PlaneSource::plane, `scan` and
-/// `write_layers`, and, with LayerWriteOptions::strict, Error{defect} for the first finding that is at least
-/// a warning.
+/// meshes. There is one input, so all `findings` are those of file 0. Throws the errors of
+/// PlaneSource::plane, `scan` and `write_layers`, and, with LayerWriteOptions::strict, Error{defect} for the
+/// first finding that is at least a warning.
 [[nodiscard]] FileResult scan_layers(const std::string& path, const LayerFormat& format,
                                      const PlaneSource& source, const ScanStrategy& strategy,
                                      const LayerWriteOptions& options = {}, const Execution& execution = {},

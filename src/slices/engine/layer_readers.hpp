@@ -1,6 +1,6 @@
 #pragma once
 
-// The readers of slice files. Each format has a source of its name; docs/formats.md describes the formats.
+// The readers of slice files. Each format has a source; docs/formats.md describes the formats.
 // Each has a function that recognises it by its content, and one that reads it. The latter throws
 // Error{input} with the offset, the line, or the file within an archive and the position there.
 

@@ -2,8 +2,8 @@
 
 // Reads the pieces of a slice file on all threads, and can parse single layers again later.
 //
-// A format divides the file into pieces, parses them, and says at which heights their layers are; the rest is
-// the same for all formats.
+// A format finds the pieces and parses them. The order, the progress and parsing again are the same for all
+// formats that use this header; those are all but the slices of 3MF, which one model may place several times.
 
 #include "lamella/core/execution.hpp"
 #include "lamella/slices/layer_file.hpp"
@@ -77,7 +77,7 @@ void read_layers_of(Format& format, ReadLimits& limits, Executor& executor, Prog
         [&](auto&& piece) { format.append(std::move(piece), limits); });
 }
 
-/// The same for a file of this number of bytes that consists of pieces alone.
+/// The same, with an executor and a progress meter of its own; `bytes` is the size of the file.
 template <class Format>
 void read_layers_of(Format& format, ReadLimits& limits, const Execution& execution, std::uint64_t bytes) {
     Executor executor(execution);
@@ -88,8 +88,8 @@ void read_layers_of(Format& format, ReadLimits& limits, const Execution& executi
 
 /// Returns a function that parses a layer again. `Format` also has
 ///
-///     RawLayer layer(Piece&&) const;  // the only layer of the piece, with the numbers of the parts of the
-///     file
+///     // Returns the only layer of the piece, with the numbers of the parts of the file.
+///     RawLayer layer(Piece&&) const;
 template <class Format>
 [[nodiscard]] ParseLayer parsing_again(std::shared_ptr<const Format> format) {
     return [format = std::move(format)](std::size_t begin, ReadLimits& limits) {

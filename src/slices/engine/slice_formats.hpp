@@ -12,7 +12,8 @@
 
 namespace lamella {
 
-/// A format of slice files. If it can be read, it is either an archive or not.
+/// A format of slice files. One that can be read has `recognises` and `read` or, if it is an archive,
+/// `in_archive` and `read_archive`.
 struct SliceFormat {
     LayerFormat writer = {};
 
@@ -30,12 +31,12 @@ struct SliceFormat {
     ReadLayersOfArchive* read_archive = nullptr;
 
     /// If such a file is read as a mesh: the kind of file, and advice, as the end of a sentence that begins
-    /// with the name of the file. "" for formats that also hold meshes.
+    /// with the name of the file. Only formats with an extension have it, and none that also holds meshes.
     std::string_view advice = {};
 };
 
-/// Returns all formats, in the order in which help lists them. The last one that recognises a file applies,
-/// because the first ones have the weakest signatures.
+/// Returns all formats, in the order in which help lists them. Of those that recognise a file, the last one
+/// applies.
 [[nodiscard]] std::span<const SliceFormat> slice_formats() noexcept;
 
 /// Returns the format of an archive that holds layers, or may hold them, by the names of its entries; null
