@@ -48,7 +48,7 @@ OptionGroup output_options(ConvertArguments& target) {
 
 int run_convert(const ConvertArguments& arguments, const Context& context) {
     check_outputs(context.command);
-    const LayerFormat& format = layer_format(arguments.writing.format, arguments.output);
+    const LayerFormat& format = arguments.writing.chosen(arguments.output);
     LayerWriteOptions options = arguments.writing.write_options(format);
     options.strict = arguments.strict;
     const Execution execution = arguments.run.execution(context);

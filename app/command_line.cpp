@@ -2,6 +2,7 @@
 
 #include "lamella/core/error.hpp"
 #include "lamella/core/printable.hpp"
+#include "lamella/core/suggest.hpp"
 
 #include "config_file.hpp"
 #include "deadline.hpp"
@@ -9,7 +10,6 @@
 #include "names.hpp"
 #include "numbers.hpp"
 #include "standard_streams.hpp"
-#include "suggest.hpp"
 #include "system/program_start.hpp"
 
 #include <fmt/format.h>

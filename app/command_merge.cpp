@@ -27,7 +27,7 @@ struct MergeArguments {
 
 int run_merge(const MergeArguments& arguments, const Context& context) {
     check_outputs(context.command);
-    const LayerFormat& format = layer_format(arguments.writing.format, arguments.output);
+    const LayerFormat& format = arguments.writing.chosen(arguments.output);
     LayerWriteOptions options = arguments.writing.write_options(format);
     options.page.title = title_of(arguments.output);
     const Execution execution = arguments.run.execution(context);

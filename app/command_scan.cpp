@@ -94,7 +94,7 @@ int run_scan(const ScanCommandArguments& arguments, const Context& context) {
     if (arguments.output.empty())
         throw Error(ErrorKind::usage, "where should the vectors go? Say -o job.cli");
     check_outputs(context.command);
-    const LayerFormat& format = layer_format(arguments.writing.format, arguments.output);
+    const LayerFormat& format = arguments.writing.chosen(arguments.output);
     LayerWriteOptions options = arguments.writing.write_options(format);
     options.strict = arguments.strict;
     options.page.title = title_of(arguments.input);

@@ -242,7 +242,7 @@ void check_shard(const SliceArguments& arguments) {
                    "a shard that is finished has no figures");
     if (arguments.output.empty())
         return;
-    const LayerFormat& format = layer_format(arguments.writing.format, arguments.output);
+    const LayerFormat& format = arguments.writing.chosen(arguments.output);
     if (format.one_way)
         throw Error(
             ErrorKind::usage,
@@ -251,7 +251,7 @@ void check_shard(const SliceArguments& arguments) {
 
 /// Checks that no other result lies in the output folder, which is replaced as a whole.
 void check_folder(const SliceArguments& arguments) {
-    if (arguments.output.empty() || !layer_format(arguments.writing.format, arguments.output).directory)
+    if (arguments.output.empty() || !arguments.writing.chosen(arguments.output).directory)
         return;
     const std::filesystem::path folder = place_of(arguments.output);
     for (const auto& [name, path] :
@@ -307,9 +307,11 @@ FileJob make_job(const SliceArguments& arguments) {
     job.scan = strategy_of(arguments);
     job.layer_statistics = !arguments.stats.empty() || (!arguments.report.empty() && job.steps.any());
     job.output = arguments.output;
-    job.format = arguments.writing.format;
-    if (!job.output.empty())
-        job.write = arguments.writing.write_options(layer_format(job.format, job.output));
+    if (!job.output.empty()) {
+        const LayerFormat& format = arguments.writing.chosen(job.output);
+        job.format = format.name;
+        job.write = arguments.writing.write_options(format);
+    }
     job.write.strict = job.strict;
     job.write.page.title = title_of(job.inputs);
     if (!arguments.report.empty()) {
@@ -382,12 +384,13 @@ std::string files_before(const std::string& meshes, const SliceArguments& argume
 std::string_view batch_extension(const SliceArguments& arguments) {
     if (arguments.output.empty() || has_placeholder(arguments.output))
         return {};
-    if (arguments.writing.format.empty() && extension_of(arguments.output).empty())
+    if (arguments.writing.format.empty() && arguments.writing.image.printer.empty() &&
+        extension_of(arguments.output).empty())
         throw Error(ErrorKind::usage,
                     fmt::format("{} becomes a folder with a file for each mesh; choose their format, such as "
                                 "--format cli",
                                 arguments.output));
-    return layer_format(arguments.writing.format, arguments.output).file_extension;
+    return arguments.writing.file_extension(arguments.output);
 }
 
 int slice_batch(SliceArguments& arguments, const Context& context) {

@@ -9,9 +9,10 @@
 namespace lamella::app {
 
 std::vector<Command> all_commands() {
-    std::vector<Command> commands{slice_command(),   info_command(), verify_command(),     compare_command(),
-                                  convert_command(), scan_command(), strategy_command(),   merge_command(),
-                                  view_command(),    make_command(), completion_command(), help_command()};
+    std::vector<Command> commands{
+        slice_command(), info_command(),     verify_command(),     compare_command(), convert_command(),
+        scan_command(),  strategy_command(), printers_command(),   resin_command(),   merge_command(),
+        view_command(),  make_command(),     completion_command(), help_command()};
     std::vector<std::string> sections;
     for (const Command& command : commands)
         for (const OptionGroup& group : command.groups)

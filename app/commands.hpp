@@ -17,6 +17,8 @@ namespace lamella::app {
 [[nodiscard]] Command convert_command();
 [[nodiscard]] Command scan_command();
 [[nodiscard]] Command strategy_command();
+[[nodiscard]] Command printers_command();
+[[nodiscard]] Command resin_command();
 [[nodiscard]] Command merge_command();
 [[nodiscard]] Command view_command();
 [[nodiscard]] Command make_command();

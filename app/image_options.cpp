@@ -5,6 +5,7 @@
 
 #include "numbers.hpp"
 #include "options.hpp"
+#include "resin_settings_file.hpp"
 
 #include <fmt/format.h>
 
@@ -76,12 +77,17 @@ OptionGroup image_options(ImageArguments& target) {
         positive("gamma", "G", "the grey value is 255 x (covered part)^G (default: 1)", target.gamma);
     Option fade = count_within(
         "fade-layers",
-        "sl1: number of layers in which the first exposure time fades to the normal one (default: 10)", 0,
+        "number of layers in which the first exposure time fades to the normal one (default: 5; sl1: 10)", 0,
         std::numeric_limits<std::uint32_t>::max(), target.fade_layers);
     return {
         "images",
-        "Images (png, png-zip, sl1, sl1s)",
-        {lengths("pixel-size", "MM|X,Y", "size of a pixel (default for png and png-zip: 0.05)",
+        "Images and resin printers",
+        {text("printer", "NAME",
+              "resin printer, by its name or a part of it, such as \"Mars 4\": determines the display, and "
+              "the "
+              "format if --format does not",
+              target.printer),
+         lengths("pixel-size", "MM|X,Y", "size of a pixel (default for png and png-zip: 0.05)",
                  target.pixel_mm),
          row("resolution", ValueKind::text, "WxH",
              "pixels of the display along x and y (default for png and png-zip: as many as the part needs)",
@@ -93,11 +99,15 @@ OptionGroup image_options(ImageArguments& target) {
          choice("mirror", "AXES", "axes along which the display is mirrored, as in PrusaSlicer",
                 {"none", "x", "y", "xy"}, target.mirror),
          std::move(antialias), std::move(gamma),
+         input_file("resin",
+                    "TOML file of exposures, movements of the plate and the resin; see lamella resin",
+                    target.resin),
          positive("exposure", "SECONDS",
-                  "sl1: exposure time of a layer (default: 7.5 for the SL1, 2 for the SL1S)",
+                  "exposure time of a layer (default: that of the printer, such as 2.5; sl1: 7.5; sl1s: 2)",
                   target.exposure_s),
          positive("first-exposure", "SECONDS",
-                  "sl1: exposure time of the first three layers (default: 35 for the SL1, 25 for the SL1S)",
+                  "exposure time of the first layers (default: that of the printer, such as 30; sl1: 35; "
+                  "sl1s: 25)",
                   target.first_exposure_s),
          std::move(fade)}};
 }
@@ -106,6 +116,7 @@ void ImageArguments::apply(const LayerFormat& format, LayerWriteOptions& options
     const auto check = [&format](bool given, std::string_view option, bool LayerFormat::*takes) {
         check_format(format, given, option, takes);
     };
+    check(!printer.empty(), "printer", &LayerFormat::image);
     check(pixel_mm.has_value(), "pixel-size", &LayerFormat::image);
     check(pixels.has_value(), "resolution", &LayerFormat::image);
     check(display_mm.has_value(), "display-size", &LayerFormat::image);
@@ -113,6 +124,7 @@ void ImageArguments::apply(const LayerFormat& format, LayerWriteOptions& options
     check(!mirror.empty(), "mirror", &LayerFormat::image);
     check(antialias.has_value(), "antialias", &LayerFormat::image);
     check(gamma.has_value(), "gamma", &LayerFormat::image);
+    check(!resin.empty(), "resin", &LayerFormat::exposure);
     check(exposure_s.has_value(), "exposure", &LayerFormat::exposure);
     check(first_exposure_s.has_value(), "first-exposure", &LayerFormat::exposure);
     check(fade_layers.has_value(), "fade-layers", &LayerFormat::exposure);
@@ -129,11 +141,18 @@ void ImageArguments::apply(const LayerFormat& format, LayerWriteOptions& options
     }
     image.raster.antialias = antialias.value_or(image.raster.antialias);
     image.raster.gamma = gamma.value_or(image.raster.gamma);
-    options.exposure.normal_s = exposure_s;
-    options.exposure.first_s = first_exposure_s;
-    options.exposure.fade_layers = fade_layers.value_or(options.exposure.fade_layers);
+    if (!printer.empty())
+        options.printer = &find_resin_printer(printer);
+    if (!resin.empty())
+        options.resin = read_resin_settings(resin);
+    if (exposure_s)
+        options.resin.exposure_s = exposure_s;
+    if (first_exposure_s)
+        options.resin.bottom_exposure_s = first_exposure_s;
+    if (fade_layers)
+        options.resin.transition_layers = fade_layers;
     if (format.exposure)
-        options.exposure.created_s = source_date();
+        options.resin.created_s = source_date();
 }
 
 } // namespace lamella::app

@@ -14,6 +14,8 @@
 namespace lamella::app {
 
 struct ImageArguments {
+    std::string printer = {};
+    std::string resin = {}; ///< path of a file of settings
     std::optional<AlongXY<double>> pixel_mm = {};
     std::optional<AlongXY<std::uint32_t>> pixels = {};
     std::optional<AlongXY<double>> display_mm = {};

@@ -2,13 +2,13 @@
 
 #include "lamella/core/error.hpp"
 #include "lamella/core/printable.hpp"
+#include "lamella/core/suggest.hpp"
 
 #include "crash.hpp"
 #include "heap.hpp"
 #include "names.hpp"
 #include "numbers.hpp"
 #include "standard_streams.hpp"
-#include "suggest.hpp"
 #include "system/program_start.hpp"
 #include "viewer/viewer_page.hpp"
 
@@ -346,6 +346,33 @@ std::vector<Option> layer_output_options(LayerOutputOptions& target) {
             "max-output",
             "stop if the layers take more than this in the slice file, such as 500M or 2G (exit code 5)",
             target.max_output)};
+}
+
+const LayerFormat& LayerOutputOptions::chosen(const std::string& output) const {
+    if (image.printer.empty())
+        return layer_format(format, output);
+    const ResinPrinter& printer = find_resin_printer(image.printer);
+    if (!format.empty()) {
+        const LayerFormat& named = layer_format(format, output);
+        check_format(named, true, "printer", &LayerFormat::image);
+        if (named.exposure && named.name != printer.format)
+            throw Error(ErrorKind::usage, fmt::format("--format {}: the {} reads the format {}", named.name,
+                                                      printer.name, printer.format));
+        return named;
+    }
+    const std::string extension = extension_of(output);
+    if (output != "-" && !extension.empty() && extension != printer.extension)
+        throw Error(ErrorKind::usage,
+                    fmt::format("'{}': the {} reads files with the extension {}; choose that, or png-zip as "
+                                "--format for images alone",
+                                one_line(output), printer.name, printer.extension));
+    return layer_format(printer.format, output);
+}
+
+std::string_view LayerOutputOptions::file_extension(const std::string& folder) const {
+    const LayerFormat& known = chosen(folder);
+    return known.exposure && !image.printer.empty() ? find_resin_printer(image.printer).extension
+                                                    : known.file_extension;
 }
 
 LayerWriteOptions LayerOutputOptions::write_options(const LayerFormat& chosen) const {

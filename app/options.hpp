@@ -107,6 +107,11 @@ struct LayerOutputOptions {
     std::optional<std::uint64_t> max_output = {}; ///< bytes
     ImageArguments image = {};
 
+    /// Returns the format of an output: that of `format`, or of the printer, or of the extension. Throws
+    /// Error{usage} if they contradict each other.
+    [[nodiscard]] const LayerFormat& chosen(const std::string& output) const;
+    /// Returns the extension of outputs in this folder (see LayerFormat::file_extension).
+    [[nodiscard]] std::string_view file_extension(const std::string& folder) const;
     /// Throws Error{usage} if options do not apply to the format.
     [[nodiscard]] LayerWriteOptions write_options(const LayerFormat& chosen) const;
 };

@@ -3,6 +3,7 @@
 #include "lamella/core/error.hpp"
 #include "lamella/core/execution.hpp"
 #include "lamella/core/printable.hpp"
+#include "lamella/core/suggest.hpp"
 #include "lamella/core/version.hpp"
 
 #include "command_line.hpp"
@@ -15,7 +16,6 @@
 #include "names.hpp"
 #include "numbers.hpp"
 #include "standard_streams.hpp"
-#include "suggest.hpp"
 #include "system/program_ending.hpp"
 #include "system/program_start.hpp"
 #include "text_file.hpp"

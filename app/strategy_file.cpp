@@ -2,10 +2,10 @@
 
 #include "lamella/core/error.hpp"
 #include "lamella/core/printable.hpp"
+#include "lamella/core/suggest.hpp"
 #include "lamella/scan/strategy_fields.hpp"
 
 #include "numbers.hpp"
-#include "suggest.hpp"
 #include "toml_file.hpp"
 
 #include <fmt/format.h>
@@ -30,30 +30,6 @@ constexpr std::string_view contours_key = "contours"; ///< of supports
 constexpr std::string_view hatch_key = "hatch";       ///< of skins and supports
 
 // ------------------------------------------------------------------------------------------------ read
-
-std::string found_text(const TomlValue& value) {
-    if (const auto* text = value.as<std::string>())
-        return fmt::format("\"{}\"", excerpt(*text));
-    if (const auto* flag = value.as<bool>())
-        return *flag ? "true" : "false";
-    if (const auto* whole = value.as<std::int64_t>())
-        return std::to_string(*whole);
-    if (const auto* number = value.as<double>())
-        return exact(*number);
-    if (value.as<TomlList>() != nullptr)
-        return "a list";
-    return value.as<TomlTable>() != nullptr ? "a table" : "a date or time";
-}
-
-[[noreturn]] void refuse_value(const TomlValue& value, const std::string& name, const std::string& expected) {
-    refuse_toml(value.location, fmt::format("{} is {}, but has to be {}", name, found_text(value), expected));
-}
-
-std::string meant(std::string_view word, const std::vector<std::string>& candidates) {
-    const std::string near = nearest(word, candidates);
-    return near.empty() ? fmt::format("; there are {}", fmt::join(candidates, ", "))
-                        : fmt::format("; did you mean {}?", near);
-}
 
 /// Where values are, by their paths.
 using Locations = std::map<std::string, std::string>;
@@ -114,21 +90,21 @@ class FileValue : public StrategyValue {
                                  const std::vector<std::string>& known) const override {
         refuse_toml(value_.location,
                     fmt::format("{} has no \"{}\"{}", name.empty() ? "a strategy" : fmt::format("[{}]", name),
-                                excerpt(key), meant(key, known)));
+                                excerpt(key), meant_text(key, known)));
     }
 
     [[noreturn]] void refuse_set(const std::string& name, const std::string& set,
                                  const std::vector<std::string>& known) const override {
         refuse_toml(locations_.at(name),
                     fmt::format("{} is \"{}\", but there is no [{}.{}]{}", name, excerpt(set), parameters_key,
-                                excerpt(set), meant(set, known)));
+                                excerpt(set), meant_text(set, known)));
     }
 
     [[noreturn]] void refuse_unused(const std::string& set,
                                     const std::vector<std::string>& used) const override {
         const std::string name = fmt::format("{}.{}", parameters_key, set);
         refuse_toml(locations_.at(name),
-                    fmt::format("[{}] is used nowhere{}", excerpt(name), meant(set, used)));
+                    fmt::format("[{}] is used nowhere{}", excerpt(name), meant_text(set, used)));
     }
 
   private:

@@ -8,11 +8,14 @@
 
 #include "lamella/core/error.hpp"
 #include "lamella/core/printable.hpp"
+#include "lamella/core/suggest.hpp"
 
+#include "numbers.hpp"
 #include "standard_streams.hpp"
 #include "text_file.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 // If a key begins with a non-ASCII letter, the library reaches a branch that is marked as unreachable, but
 // returns the correct result.
@@ -86,6 +89,34 @@ TomlTable read_toml(const std::string& path) {
 
 void refuse_toml(const std::string& location, std::string_view text) {
     throw Error(ErrorKind::usage, fmt::format("{}: {}", location, text));
+}
+
+namespace {
+
+std::string found_text(const TomlValue& value) {
+    if (const auto* text = value.as<std::string>())
+        return fmt::format("\"{}\"", excerpt(*text));
+    if (const auto* flag = value.as<bool>())
+        return *flag ? "true" : "false";
+    if (const auto* whole = value.as<std::int64_t>())
+        return std::to_string(*whole);
+    if (const auto* number = value.as<double>())
+        return exact(*number);
+    if (value.as<TomlList>() != nullptr)
+        return "a list";
+    return value.as<TomlTable>() != nullptr ? "a table" : "a date or time";
+}
+
+} // namespace
+
+void refuse_value(const TomlValue& value, const std::string& name, const std::string& expected) {
+    refuse_toml(value.location, fmt::format("{} is {}, but has to be {}", name, found_text(value), expected));
+}
+
+std::string meant_text(std::string_view word, const std::vector<std::string>& candidates) {
+    const std::string near = nearest(word, candidates);
+    return near.empty() ? fmt::format("; there are {}", fmt::join(candidates, ", "))
+                        : fmt::format("; did you mean {}?", near);
 }
 
 } // namespace lamella::app

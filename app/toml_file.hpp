@@ -39,4 +39,10 @@ struct TomlEntry {
 /// Throws Error{usage}: "job.toml:3: ...".
 [[noreturn]] void refuse_toml(const std::string& location, std::string_view text);
 
+/// Throws Error{usage}: "job.toml:3: NAME is FOUND, but has to be EXPECTED".
+[[noreturn]] void refuse_value(const TomlValue& value, const std::string& name, const std::string& expected);
+
+/// Returns the candidate that an unknown key may mean, or all of them: "; did you mean KEY?".
+[[nodiscard]] std::string meant_text(std::string_view word, const std::vector<std::string>& candidates);
+
 } // namespace lamella::app

@@ -10,6 +10,7 @@
 #include "lamella/core/error.hpp"
 #include "lamella/core/execution.hpp"
 #include "lamella/core/printable.hpp"
+#include "lamella/core/suggest.hpp"
 #include "lamella/core/unit_circle.hpp"
 #include "lamella/core/version.hpp"
 

@@ -182,7 +182,7 @@ def write(
         are rounded to whole units with short_form, in "cli-ascii" and in "3mf-toolpath".
     short_form: writes coordinates of 16 bits, in binary Common Layer Interface and ILT.
 
-    Images (png, png-zip, sl1, sl1s):
+    Images (png, png-zip, and the formats of resin printers):
     pixel_mm, pixels, display_mm: size of a pixel, number of pixels, and size of the display, each along x and y; any
         two of these three determine the third. Values not given are those of the printer; without a printer, pixels are
         0.05 mm wide.
@@ -191,9 +191,9 @@ def write(
     antialias: 1 for black and white, by the centres of pixels; 2 to 64 for grey values, which are the covered fractions
         of pixels, exact for up to that many corners close together; 8 by default.
     gamma: exponent of grey values: 255 times the covered fraction to this power; 1 by default.
-    exposure_s, first_exposure_s: exposure time in seconds of a layer, and of each of the first three layers (sl1,
-        sl1s).
-    fade_layers: number of layers over which the first exposure fades to the normal one (sl1, sl1s); 10 by default.
+    exposure_s, first_exposure_s: exposure time in seconds of a layer, and of each of the first layers (formats of resin
+        printers).
+    fade_layers: number of layers over which the first exposure fades to the normal one; sl1, sl1s: 10 by default.
 
     strict: raises a DefectError instead of issuing a DefectWarning, and writes no file.
     threads: number of threads that format layers; 0 means one for each processor. The file does not depend on it.

@@ -212,10 +212,9 @@ LayerWriteOptions write_options(const py::dict& given) {
     }
     image.raster.antialias = option<unsigned>(given, "antialias").value_or(image.raster.antialias);
     image.raster.gamma = option<double>(given, "gamma").value_or(image.raster.gamma);
-    options.exposure.normal_s = option<double>(given, "exposure_s");
-    options.exposure.first_s = option<double>(given, "first_exposure_s");
-    options.exposure.fade_layers =
-        option<std::uint32_t>(given, "fade_layers").value_or(options.exposure.fade_layers);
+    options.resin.exposure_s = option<double>(given, "exposure_s");
+    options.resin.bottom_exposure_s = option<double>(given, "first_exposure_s");
+    options.resin.transition_layers = option<std::uint32_t>(given, "fade_layers");
     options.page.viewer = viewer_page();
     options.page.no_viewer = no_viewer();
     return options;
@@ -250,7 +249,7 @@ std::unique_ptr<StackWriter> open_writer(const std::string& path, const std::str
     LayerWriteOptions writing = write_options(options);
     writing.page.title = in_memory ? "layers" : std::filesystem::path(path).filename().string();
     if (layer_format(format, path).exposure)
-        writing.exposure.created_s = source_date();
+        writing.resin.created_s = source_date();
     return std::make_unique<StackWriter>(path, format, std::move(info), writing, in_memory);
 }
 

@@ -62,6 +62,7 @@ class ByteBuffer {
 
     void clear() noexcept { size_ = 0; }
     [[nodiscard]] std::string_view view() const noexcept { return {bytes_.data(), size_}; }
+    [[nodiscard]] char* data() noexcept { return bytes_.data(); }
 
   private:
     void grow(std::size_t size) {

@@ -24,7 +24,7 @@ class CommandLine(ProgramTest):
 
     def test_every_command_has_help(self):
         commands = self.commands()
-        self.assertEqual(commands, ["slice", "info", "verify", "compare", "convert", "scan", "strategy", "merge", "view", "make", "completion", "help"])
+        self.assertEqual(commands, ["slice", "info", "verify", "compare", "convert", "scan", "strategy", "printers", "resin", "merge", "view", "make", "completion", "help"])
         for command in commands:
             with self.subTest(command):
                 text = self.succeed(command, "--help").text

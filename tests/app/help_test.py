@@ -5,7 +5,7 @@ import re
 
 from program import ProgramTest, main
 
-COMMANDS = ["slice", "info", "verify", "compare", "convert", "scan", "strategy", "merge", "view", "make", "completion", "help"]
+COMMANDS = ["slice", "info", "verify", "compare", "convert", "scan", "strategy", "printers", "resin", "merge", "view", "make", "completion", "help"]
 
 
 class Help(ProgramTest):

@@ -38,7 +38,7 @@ COMMANDS = {
     "merge": [["OUT.cli", "LAYERS"]],
     "view": [["LAYERS", "-o", "OUT.html"]],
 }
-WITHOUT_LAYERS = {"strategy", "make", "completion", "help"}
+WITHOUT_LAYERS = {"strategy", "printers", "resin", "make", "completion", "help"}
 
 
 def chords(seed, size):

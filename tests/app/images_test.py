@@ -149,7 +149,7 @@ class Images(ProgramTest):
 
     def test_what_does_not_fit_is_refused(self):
         self.box(size="130,30,2")
-        self.fail_with(2, r"part measures 130 x 30 mm and the display of the SL1 only 120\.96 x 68\.04 mm",
+        self.fail_with(2, r"part measures 130 x 30 mm and the display of the Original Prusa SL1 only 120\.96 x 68\.04 mm",
                        "slice", "box.stl", "-o", "part.sl1")
         self.fail_with(2, "need 1.3e\\+06 pixels of 0.0001 mm, and 65535 are the most",
                        "slice", "box.stl", "-o", "part.zip", "--pixel-size", "0.0001")
@@ -172,12 +172,12 @@ class Images(ProgramTest):
                 (["--gamma", "0"], "above 0"),
                 (["--mirror", "z"], "--mirror"),
                 (["--orientation", "upside"], "--orientation"),
-                (["--exposure", "3"], "sl1, sl1s, not with png-zip"),
+                (["--exposure", "3"], "sl1, sl1s, goo, ctb, cbddlp, anycubic, chitubox-zip, nanodlp, not with png-zip"),
                 (["--pixel-size", "1", "--display-size", "10.5,40"], "no whole number"),
                 (["--pixel-size", "1", "--display-size", "40,40", "--resolution", "40x50"],
                  "are 50 mm, not the 40 mm")]:
             self.fail_with(2, pattern, "slice", "box.stl", "-o", "part.zip", *options)
-        self.fail_with(2, "--antialias goes with the formats png, png-zip, sl1, sl1s, not with cli",
+        self.fail_with(2, "--antialias goes with the formats png, png-zip, sl1, sl1s, goo, ctb, cbddlp, anycubic, chitubox-zip, nanodlp, not with cli",
                        "slice", "box.stl", "-o", "part.cli", "--antialias", "4")
         self.fail_with(2, "SOURCE_DATE_EPOCH is \"soon\"", "slice", "box.stl", "-o", "part.sl1",
                        env={**os.environ, "SOURCE_DATE_EPOCH": "soon"})

@@ -4,7 +4,7 @@ import re
 
 from program import SOURCE, ProgramTest, main
 
-COMMANDS = ["slice", "info", "verify", "compare", "convert", "scan", "strategy", "merge", "view", "make", "completion", "help"]
+COMMANDS = ["slice", "info", "verify", "compare", "convert", "scan", "strategy", "printers", "resin", "merge", "view", "make", "completion", "help"]
 
 
 class ProgramDocs(ProgramTest):

@@ -4,6 +4,7 @@
 #include "lamella/meshes/mesh_writer.hpp"
 
 #include "expect_same_result.hpp"
+#include "fixtures/any_printer.hpp"
 #include "fixtures/expect_error.hpp"
 #include "fixtures/packages.hpp"
 #include "fixtures/rounds.hpp"
@@ -62,6 +63,7 @@ TEST_F(Processes, WriteTheBytesOfOneProcessWithAnyNumberOfThem) {
             continue;
         FileJob job = job_of({{.path = path("part.stl")}}, 1.5);
         job.format = format.name;
+        job.write.printer = &test::any_printer;
         job.write.page.viewer = "<!--lamella-data-->"; // what the library asks of a viewer
         job.output = path("one");
         const FileResult one = slice_file(job);

@@ -166,9 +166,10 @@ class Slow(io.RawIOBase):
 
 
 FOLDERS = ("png", "svg-layers")
+FOR_PRINTERS = ("goo", "ctb", "cbddlp", "anycubic", "chitubox-zip", "nanodlp")
 
 
-@pytest.mark.parametrize("name", [name for name, _, _ in lamella.layer_formats() if name not in FOLDERS])
+@pytest.mark.parametrize("name", [name for name, _, _ in lamella.layer_formats() if name not in FOLDERS + FOR_PRINTERS])
 @pytest.mark.filterwarnings("ignore::lamella.DefectWarning")
 def test_layers_are_written_to_memory(tmp_path, monkeypatch, name):
     monkeypatch.setenv("SOURCE_DATE_EPOCH", "1700000000")

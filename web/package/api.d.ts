@@ -272,7 +272,7 @@ export function sliceLayers(meshes: Mesh | readonly PlacedMesh[], options?: Slic
 
 export type FileFormat =
   | 'cli' | 'cli-ascii' | 'svg' | 'slc' | '3mf' | 'dxf' | 'geojson' | 'json' | 'npz' | 'raw' | 'ilt' | 'ovf' | '3mf-toolpath' | 'html'
-  | 'svg-layers' | 'png-zip' | 'sl1' | 'sl1s';
+  | 'svg-layers' | 'png-zip' | 'sl1' | 'sl1s' | 'goo' | 'ctb' | 'cbddlp' | 'anycubic' | 'chitubox-zip' | 'nanodlp';
 
 /** Slices into a slice file, without layers in between. */
 export function sliceToFile(

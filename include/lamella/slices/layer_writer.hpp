@@ -1,6 +1,6 @@
 #pragma once
 
-// Slice file writers: Common Layer Interface, SVG, images.
+// Writers of slice files, in all formats of `layer_formats`.
 
 #include "lamella/contour/plane_source.hpp"
 #include "lamella/core/commit.hpp"
@@ -9,6 +9,8 @@
 #include "lamella/core/point.hpp"
 #include "lamella/findings/findings.hpp"
 #include "lamella/slices/image_options.hpp"
+#include "lamella/slices/resin_printer.hpp"
+#include "lamella/slices/resin_settings.hpp"
 
 #include <cstddef>
 #include <cstdint>
@@ -28,7 +30,7 @@ namespace lamella {
 [[nodiscard]] Box3 part_box(std::span<const Layer> layers, std::span<const PointArray> hatches = {},
                             const Execution& execution = {.threads = 1});
 
-/// Content of a range of layers that the format of a file cannot hold, or that some formats cannot hold.
+/// Losses in a range of layers, including those that only other formats have.
 struct WriteLosses {
     /// Findings of FindingOrigin::output that belong to layers.
     Findings found;
@@ -49,8 +51,8 @@ struct WriteLosses {
 struct LayerFileChunk {
     std::uint64_t before = 0; ///< number of layers of the file below this range
     std::uint64_t layers = 0; ///< number of layers of this range
-    /// Takes the bytes of the range, in order. If they have an owner, which keeps them alive, it may add work
-    /// on them to the completions; otherwise it must copy them.
+    /// Takes the bytes of the range, in order. If there is an owner, it keeps the bytes alive, and a
+    /// completion may use them later; otherwise this function must copy them.
     std::function<void(std::string_view, std::shared_ptr<const void> owner, Completions& after)> put;
 };
 
@@ -108,10 +110,13 @@ struct LayerWriteOptions {
     double units_mm = usual_units_mm;
     /// Common Layer Interface, binary: writes 16-bit coordinates. Error{usage} if the coordinates do not fit.
     bool short_form = false;
-    /// Options of the formats png, png-zip, sl1 and sl1s.
+    /// Options of the formats with LayerFormat::image.
     ImageOptions image = {};
-    /// Options of the formats sl1 and sl1s.
-    ExposureOptions exposure = {};
+    /// Printer whose display the images are for. Formats for printers need it, or the pixels of the display
+    /// in `image`. It must outlive the writer.
+    const ResinPrinter* printer = nullptr;
+    /// Options of the formats with LayerFormat::exposure.
+    ResinSettings resin = {};
     /// Options of the format html.
     PageOptions page = {};
 };
@@ -128,6 +133,8 @@ struct LayerFormat {
                                          const LayerWriteOptions& options) = nullptr;
     /// Extension of file names that a program generates; differs from `extension` for some formats.
     std::string_view file_extension = extension;
+    /// Further extensions that determine the format, with blanks between them.
+    std::string_view more_extensions = {};
     bool directory = false;    ///< writes one file per layer into a directory
     bool chunks = false;       ///< ranges of layers can be written separately, and compressed with gzip
     bool joins = false;        ///< files of consecutive layers can be merged without reading the layers
@@ -206,8 +213,8 @@ std::vector<std::string> write_layers(const std::string& path, std::span<const L
                                       const LayerWriteOptions& options = {}, const Execution& execution = {});
 
 /// Writes planes in any format, with a header supplied by the caller. Uses all threads. To write planes
-/// without holding all of them in memory, use LayerWriter::prepare as the sink of `slice_to`, or of
-/// PlaneSource::run.
+/// without holding all of them in memory, call LayerWriter::prepare in the sink of `slice_to` or
+/// PlaneSource::run. Returns LayerWriter::warnings.
 std::vector<std::string> write_layers(const std::string& path, const LayerFormat& format,
                                       std::span<const Plane> planes, const LayerFileInfo& info,
                                       const LayerWriteOptions& options = {}, const Execution& execution = {});

@@ -34,6 +34,19 @@ std::string names() {
     return fmt::format("{}", fmt::join(texts, ", "));
 }
 
+/// Returns whether an extension determines the format.
+bool has_extension(const LayerFormat& format, std::string_view extension) {
+    if (format.extension == extension)
+        return true;
+    std::string_view more = format.more_extensions;
+    for (std::size_t blank = 0; !more.empty(); more.remove_prefix(std::min(more.size(), blank + 1))) {
+        blank = std::min(more.find(' '), more.size());
+        if (more.substr(0, blank) == extension)
+            return true;
+    }
+    return false;
+}
+
 /// Throws if the path asks for compression that the format does not have.
 void check_compression(const LayerFormat& format, const std::string& path) {
     if (format.chunks || !has_gzip_extension(path))
@@ -159,7 +172,7 @@ const LayerFormat& layer_format(std::string_view name, const std::string& path) 
     const std::string_view wanted = name.empty() ? std::string_view(extension) : name;
     const std::span<const LayerFormat> formats = layer_formats();
     const auto found = std::find_if(formats.begin(), formats.end(), [&](const LayerFormat& format) {
-        return (name.empty() ? format.extension : format.name) == wanted;
+        return name.empty() ? has_extension(format, wanted) : format.name == wanted;
     });
     if (found != formats.end() && (!name.empty() || !extension.empty())) {
         if (name.empty())

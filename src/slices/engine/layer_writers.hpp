@@ -1,6 +1,6 @@
 #pragma once
 
-// The formats of slice files. Each has a source of the same name. docs/formats.md describes their content.
+// The formats of slice files. Each has a source. docs/formats.md describes their content.
 
 #include "lamella/slices/layer_writer.hpp"
 
@@ -45,6 +45,17 @@ OpenLayerWriter open_image_archive;
 /// The print jobs of Original Prusa SL1 and SL1S.
 OpenLayerWriter open_sl1;
 OpenLayerWriter open_sl1s;
+/// Elegoo's .goo, version 3.0 ("Goo Format Spec V1.2").
+OpenLayerWriter open_goo;
+/// Chitubox's .ctb, versions 3 and 4, not encrypted; .cbddlp and .photon, version 2; and its zip archives.
+/// There is no published specification; docs/formats.md describes what files and programs have in common.
+OpenLayerWriter open_ctb;
+OpenLayerWriter open_cbddlp;
+OpenLayerWriter open_chitubox_zip;
+/// Anycubic's container of Photon Workshop, versions 515 and 516; as for .ctb.
+OpenLayerWriter open_anycubic;
+/// The plates of NanoDLP; as for .ctb.
+OpenLayerWriter open_nanodlp;
 /// SLC 2.0 of 3D Systems, binary.
 OpenLayerWriter open_slc;
 /// 3MF with slice stacks (3MF Slice Extension).

@@ -74,9 +74,21 @@ std::optional<T> y_of(const std::optional<AlongXY<T>>& pair) {
     return pair ? std::optional(pair->y) : std::nullopt;
 }
 
+/// Throws if a part is higher than the printer can make it. Files in single precision make parts a little
+/// higher than they are meant to be.
+void check_height(double part_mm, const ResinPrinter& printer) {
+    constexpr double slack_mm = 1e-3;
+    if (printer.height_mm > 0 && part_mm > printer.height_mm + slack_mm)
+        throw Error(
+            ErrorKind::usage,
+            fmt::format("the part is {:.6g} mm high, and the {} makes parts of up to {:.6g} mm: it is "
+                        "{:.4g} mm too high; turn it, make it smaller, or give another printer",
+                        part_mm, printer.name, printer.height_mm, part_mm - printer.height_mm));
+}
+
 /// Returns the options, completed by values of the printer. Its resolution is used unless the options
 /// determine one; its size is used if they have neither a display size nor a pixel size.
-ImageOptions with_printer(ImageOptions options, const ImagePrinter& printer) {
+ImageOptions with_printer(ImageOptions options, const ResinPrinter& printer) {
     if (printer.name.empty())
         return options;
     if (!options.pixels && !(options.pixel_mm && options.display_mm))
@@ -112,7 +124,7 @@ PixelGrid Display::grid(const Box3& box) const noexcept {
     return grid;
 }
 
-Display display_for(const Box3& box, const ImageOptions& options, const ImagePrinter& printer) {
+Display display_for(const Box3& box, const ImageOptions& options, const ResinPrinter& printer) {
     check_length(options.pixel_mm, "a pixel");
     check_length(options.display_mm, "a display");
     const ImageOptions given = with_printer(options, printer);
@@ -133,7 +145,15 @@ Display display_for(const Box3& box, const ImageOptions& options, const ImagePri
                         "({} x {} pixels); turn the part, make it smaller, or give another display",
                         part_x, part_y, printer.name.empty() ? "" : " of the ", printer.name,
                         display.width_mm(), display.height_mm(), x.pixels, y.pixels));
+    check_height(box.max.z - box.min.z, printer);
     return display;
+}
+
+RasterOptions raster_for(const ImageOptions& options, const ResinPrinter& printer) {
+    RasterOptions raster = options.raster;
+    if (!printer.grey)
+        raster.antialias = 1;
+    return raster;
 }
 
 } // namespace lamella

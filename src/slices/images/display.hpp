@@ -4,29 +4,11 @@
 
 #include "lamella/raster/image.hpp"
 #include "lamella/slices/image_options.hpp"
-#include "lamella/slices/layer_writer.hpp"
+#include "lamella/slices/resin_printer.hpp"
 
 #include <cstdint>
-#include <string_view>
 
 namespace lamella {
-
-/// Properties of a printer that displays images.
-struct ImagePrinter {
-    std::string_view name = {}; ///< name in help and in files; "" for no printer
-    AlongXY<std::uint32_t> pixels{};
-    AlongXY<double> display_mm{};
-    bool portrait = false;
-    bool mirror_x = false;
-    bool mirror_y = false;
-    double normal_s = 0;
-    double first_s = 0;
-    /// A layer is large if it covers more than this fraction of the display. The pauses are the times without
-    /// exposure for small and for large layers.
-    double large_area = 0.5;
-    double small_pause_s = 0;
-    double large_pause_s = 0;
-};
 
 struct Display {
     AlongXY<std::uint32_t> pixels;
@@ -44,7 +26,11 @@ struct Display {
 };
 
 /// Returns the display that the options describe, on this printer. Throws Error{usage} if they contradict
-/// each other, or if a part with this box does not fit; the error then states by how much.
-[[nodiscard]] Display display_for(const Box3& box, const ImageOptions& options, const ImagePrinter& printer);
+/// each other, or if a part with this box does not fit, also in its height; the error then states by how
+/// much.
+[[nodiscard]] Display display_for(const Box3& box, const ImageOptions& options, const ResinPrinter& printer);
+
+/// Returns the options of images for this printer: without grey if its display shows none.
+[[nodiscard]] RasterOptions raster_for(const ImageOptions& options, const ResinPrinter& printer);
 
 } // namespace lamella

@@ -70,13 +70,18 @@ bool is_ours(const fs::path& path) {
             std::all_of(number.begin(), number.end(), [](char c) { return c >= '0' && c <= '9'; }));
 }
 
+RasterOptions raster_of(const LayerWriteOptions& options) {
+    return options.printer == nullptr ? options.image.raster : raster_for(options.image, *options.printer);
+}
+
 class ImageStackWriter final : public OrderedWriter {
   public:
     ImageStackWriter(const std::string& path, bool in_folder, const LayerFileInfo& info,
                      const LayerWriteOptions& options)
         : OrderedWriter(info, {.open_chains = false, .supports = true}, Ascending::z_and_index),
-          display_(display_for(info.box, options.image, {})),
-          images_(display_.grid(info.box), options.image.raster), manifest_(display_, images_) {
+          display_(display_for(info.box, options.image,
+                               options.printer == nullptr ? ResinPrinter{} : *options.printer)),
+          images_(display_.grid(info.box), raster_of(options)), manifest_(display_, images_) {
         if (in_folder)
             folder_.emplace(path, is_ours);
         else

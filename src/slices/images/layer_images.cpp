@@ -48,6 +48,16 @@ Finding unseen_material(double z, const RasterAreas& areas, double pixel_mm2) {
             .first_z = z};
 }
 
+RasterAreas draw_parts(std::span<const Layer> all, const PixelGrid& grid, RasterOptions options,
+                       const RowSink& sink) {
+    std::vector<Layer> parts(all.size());
+    std::transform(all.begin(), all.end(), parts.begin(), without_lone_holes);
+    // This check takes less time than drawing. If it succeeds, contours finer than pixels are drawn in a
+    // fraction of the time.
+    options.winds_once = options.antialias > 1 && winds_once(parts);
+    return rasterise(parts, grid, options, sink);
+}
+
 // Draws an empty image so that impossible options are reported before the first layer.
 LayerImages::LayerImages(const PixelGrid& grid, const RasterOptions& options)
     : grid_(grid), options_(options) {
@@ -55,15 +65,9 @@ LayerImages::LayerImages(const PixelGrid& grid, const RasterOptions& options)
 }
 
 LayerImage LayerImages::image(std::span<const Layer> all) const {
-    std::vector<Layer> parts(all.size());
-    std::transform(all.begin(), all.end(), parts.begin(), without_lone_holes);
-    RasterOptions options = options_;
-    // This check takes less time than drawing. If it succeeds, contours finer than pixels are drawn in a
-    // fraction of the time.
-    options.winds_once = options.antialias > 1 && winds_once(parts);
     PngEncoder encoder(grid_.width, grid_.height);
     const RasterAreas areas =
-        rasterise(parts, grid_, options, [&](auto row, auto times) { encoder.add(row, times); });
+        draw_parts(all, grid_, options_, [&](auto row, auto times) { encoder.add(row, times); });
     const std::shared_ptr<ByteBuffer> file = buffers_->take();
     encoder.finish(*file);
     return {file, crc32_of(file->view()), areas};

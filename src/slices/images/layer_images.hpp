@@ -28,6 +28,10 @@ struct LayerImage {
 /// than a thousandth of its area, and more than a pixel.
 [[nodiscard]] Finding unseen_material(double z, const RasterAreas& areas, double pixel_mm2);
 
+/// Draws all parts into one image, like `rasterise`. Holes without an outer ring are not drawn.
+RasterAreas draw_parts(std::span<const Layer> all, const PixelGrid& grid, RasterOptions options,
+                       const RowSink& sink);
+
 /// Makes images with the same grid and options. May be used by any number of threads at once.
 class LayerImages {
   public:

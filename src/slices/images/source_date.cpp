@@ -1,6 +1,6 @@
 #include "lamella/core/error.hpp"
 #include "lamella/core/printable.hpp"
-#include "lamella/slices/image_options.hpp"
+#include "lamella/slices/resin_settings.hpp"
 
 #include <fmt/format.h>
 

@@ -15,7 +15,7 @@ namespace lamella {
 inline std::vector<const LayerFormat*> plain_formats() {
     std::vector<const LayerFormat*> found;
     for (const LayerFormat& format : layer_formats())
-        if (!format.directory && !format.name.starts_with("sl1"))
+        if (!format.directory && !format.exposure)
             found.push_back(&format);
     return found;
 }

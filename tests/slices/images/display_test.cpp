@@ -12,12 +12,12 @@ Box3 box(double x0, double y0, double x1, double y1) {
     return {{x0, y0, 0}, {x1, y1, 1}};
 }
 
-ImagePrinter printer() {
+ResinPrinter printer() {
     return {.name = "P", .pixels = {200, 100}, .display_mm = {20, 10}, .portrait = true, .mirror_x = true};
 }
 
 void expect_refusal(const char* text, const Box3& part, const ImageOptions& options,
-                    const ImagePrinter& by = {}) {
+                    const ResinPrinter& by = {}) {
     test::expect_error(ErrorKind::usage, {text}, [&] { static_cast<void>(display_for(part, options, by)); });
 }
 
@@ -111,6 +111,22 @@ TEST(Display, SaysWhyAPartDoesNotFit) {
                    box(0, 0, 30, 5), {}, printer());
     expect_refusal("measures 5 x 10.2 mm", box(0, 0, 5, 10.2), {}, printer());
     EXPECT_NO_THROW(static_cast<void>(display_for(box(0, 0, 20.004, 10), {}, printer())));
+}
+
+TEST(Display, SaysHowMuchAPartIsTooHigh) {
+    ResinPrinter low = printer();
+    low.height_mm = 0.75;
+    expect_refusal("the part is 1 mm high, and the P makes parts of up to 0.75 mm: it is 0.25 mm too high",
+                   box(0, 0, 5, 5), {}, low);
+    low.height_mm = 0.9999;
+    EXPECT_NO_THROW(static_cast<void>(display_for(box(0, 0, 5, 5), {}, low)));
+}
+
+TEST(Display, ShowsNoGreyOnDisplaysWithoutGrey) {
+    ResinPrinter plain = printer();
+    EXPECT_EQ(raster_for({}, plain).antialias, RasterOptions{}.antialias);
+    plain.grey = false;
+    EXPECT_EQ(raster_for({.raster = {.antialias = 8, .gamma = 2}}, plain).antialias, 1U);
 }
 
 TEST(Display, SaysWhatContradictsItself) {

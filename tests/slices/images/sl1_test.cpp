@@ -56,18 +56,18 @@ TEST(Sl1, AllowsAnotherHeightForTheFirstLayerOnly) {
 
 TEST(Sl1, RefusesExposuresThatAreNone) {
     const LayerStack layers = stack_of({0.1, 0.1});
-    EXPECT_NE(refusal(layers, {.exposure = {.normal_s = 0}}).find("an exposure of 0 s"), std::string::npos);
-    EXPECT_NE(refusal(layers, {.exposure = {.first_s = std::numeric_limits<double>::infinity()}})
-                  .find("a first exposure of inf s"),
+    EXPECT_NE(refusal(layers, {.resin = {.exposure_s = 0}}).find("an exposure of 0 s"), std::string::npos);
+    EXPECT_NE(refusal(layers, {.resin = {.bottom_exposure_s = std::numeric_limits<double>::infinity()}})
+                  .find("a bottom exposure of inf s"),
               std::string::npos);
 }
 
 TEST(Sl1, RefusesPartsLargerThanTheDisplay) {
     LayerBuilder builder;
     add_contour(builder, {{0, 0}, {121, 0}, {121, 50}});
-    EXPECT_NE(
-        refusal({builder.finish(0, 0.05, 0, 0.1)}).find("the display of the SL1 only 120.96 x 68.04 mm"),
-        std::string::npos);
+    EXPECT_NE(refusal({builder.finish(0, 0.05, 0, 0.1)})
+                  .find("the display of the Original Prusa SL1 only 120.96 x 68.04 mm"),
+              std::string::npos);
 }
 
 /// The entry of an archive that is stored.

@@ -1,15 +1,15 @@
-#include "suggest.hpp"
+#include "lamella/core/suggest.hpp"
 
 #include <algorithm>
 #include <cstddef>
 #include <vector>
 
-namespace lamella::app {
+namespace lamella {
 namespace {
 
 /// Returns the number of letters to insert, remove, replace or swap with their neighbour (restricted
 /// Damerau-Levenshtein distance).
-std::size_t distance(std::string_view a, std::string_view b) {
+std::size_t changed_letters(std::string_view a, std::string_view b) {
     const std::size_t width = b.size() + 1;
     std::vector<std::size_t> table((a.size() + 1) * width);
     for (std::size_t i = 0; i <= a.size(); ++i) {
@@ -42,7 +42,7 @@ std::string nearest(std::string_view word, std::span<const std::string> candidat
     for (const std::string& candidate : candidates) {
         // A word that is the beginning of a name suggests that name.
         const bool begun = word.size() >= 3 && candidate.starts_with(word);
-        const std::size_t d = begun ? 1 : distance(word, candidate);
+        const std::size_t d = begun ? 1 : changed_letters(word, candidate);
         if (d < least) {
             least = d;
             best = candidate;
@@ -56,4 +56,4 @@ std::string did_you_mean(std::string_view word, std::span<const std::string> can
     return meant.empty() ? "" : "; did you mean " + meant + "?";
 }
 
-} // namespace lamella::app
+} // namespace lamella

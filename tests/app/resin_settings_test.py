@@ -1,0 +1,79 @@
+"""Settings for resin: lamella resin, lamella printers and --resin."""
+
+import struct
+
+from program import ProgramTest, main
+
+GOO_HEADER = 195310
+
+
+class ResinSettings(ProgramTest):
+    def file(self, text):
+        self.path("resin.toml").write_text(text)
+        return "resin.toml"
+
+    def exposures(self, path):
+        """The exposures of the layers of a .goo file."""
+        data = self.bytes_of(path)
+        (count,) = struct.unpack_from(">I", data, GOO_HEADER)
+        at, found = 195477, []
+        for _ in range(count):
+            found.append(struct.unpack_from(">f", data, at + 10)[0])
+            at += 72 + struct.unpack_from(">I", data, at + 66)[0]
+        return found
+
+    def test_what_is_shown_can_be_read(self):
+        shown = self.succeed("resin", "show").text
+        self.assertIn("# exposure_s =", shown)
+        self.assertEqual(self.succeed("resin", "show", self.file(shown)).text, shown)
+        self.succeed("resin", "check", "resin.toml")
+        own = shown.replace("# exposure_s =", "exposure_s = 4").replace('"$"', '"EUR"') + (
+            "\n[[ranges]]\nfrom_mm = 1\nto_mm = 2.5\nexposure_s = 9\n")
+        again = self.succeed("resin", "show", self.file(own)).text
+        self.assertIn("exposure_s = 4 ", again)
+        self.assertIn('currency = "EUR"', again)
+        self.assertIn("to_mm = 2.5 ", again)
+        self.assertEqual(self.succeed("resin", "show", self.file(again)).text, again)
+
+    def test_errors_name_the_line(self):
+        for text, pattern in [
+                ("exposre_s = 3", r"resin\.toml:1: a file of settings for resin has no \"exposre_s\"; did you mean exposure_s\?"),
+                ("\n[travel]\nlift = 3", r"resin\.toml:3: \[travel\] has no \"lift\""),
+                ("bottom_layers = 2.5", r"resin\.toml:1: bottom_layers is 2\.5, but has to be a whole number"),
+                ("travel = 3", r"resin\.toml:1: travel is 3, but has to be a table: \[travel\]"),
+                ("[[ranges]]\nfrom_mm = 1\nto_mm = 2", "a range needs exposure_s"),
+                ("currency = 3", "currency is 3, but has to be a text"),
+                ("density_g_ml = 0", r"resin\.toml: a density of 0 g/ml: choose a positive number"),
+                ("exposure_s = ", r"resin\.toml:1: ")]:
+            self.fail_with(2, pattern, "resin", "check", self.file(text))
+        self.fail_with(2, "lamella resin check needs FILE", "resin", "check")
+
+    def test_options_override_the_file(self):
+        self.box(size="2,2,4")
+        self.file("exposure_s = 3\nbottom_exposure_s = 40\nbottom_layers = 1\ntransition_layers = 0\n"
+                  "[[ranges]]\nfrom_mm = 2\nto_mm = 3\nexposure_s = 7\n")
+        common = ["slice", "box.stl", "--layer-height", "1", "--printer", "Mars 4 DLP", "--resin", "resin.toml"]
+        self.succeed(*common, "-o", "a.goo")
+        self.assertEqual(self.exposures("a.goo"), [40, 3, 7, 3])
+        self.succeed(*common, "-o", "b.goo", "--exposure", "5", "--first-exposure", "21", "--fade-layers", "1")
+        self.assertEqual(self.exposures("b.goo"), [21, 13, 7, 5])
+        self.fail_with(2, "--resin goes with the formats sl1", "slice", "box.stl", "-o", "a.cli", "--resin", "resin.toml")
+
+    def test_printers_are_found_by_the_names_that_are_listed(self):
+        self.box(size="1,1,1")
+        lines = self.succeed("printers").text.splitlines()
+        self.assertGreater(len(lines), 60)
+        for line in lines[::10]:
+            name, extension = line.split("  ")[0], line.split()[[part.startswith(".") for part in line.split()].index(True)]
+            self.succeed("slice", "box.stl", "-o", "job" + extension, "--layer-height", "0.5", "--printer", name)
+
+    def test_a_batch_writes_files_of_the_printer(self):
+        self.path("parts").mkdir()
+        self.box(size="1,1,1")
+        self.path("box.stl").rename(self.path("parts/box.stl"))
+        self.succeed("slice", "--batch", "parts", "-o", "jobs", "--printer", "Mono X 6K", "--layer-height", "0.5")
+        self.assertEqual([path.name for path in self.path("jobs").iterdir()], ["box.pwmb"])
+
+
+if __name__ == "__main__":
+    main()
