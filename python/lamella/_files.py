@@ -26,8 +26,8 @@ MESH_FORMATS = ("stl", "ply", "obj")
 # The options of formats, each with the property that a format must have for it to apply.
 OPTIONS = {
     "units_mm": "units", "short_form": "short_form", "pixel_mm": "picture", "pixels": "picture", "display_mm": "picture",
-    "orientation": "picture", "mirror": "picture", "antialias": "picture", "gamma": "picture", "exposure_s": "exposure",
-    "first_exposure_s": "exposure", "fade_layers": "exposure",
+    "printer": "picture", "orientation": "picture", "mirror": "picture", "antialias": "picture", "gamma": "picture",
+    "exposure_s": "exposure", "first_exposure_s": "exposure", "fade_layers": "exposure",
 }  # fmt: skip
 # Formats that store the heights of layers unchanged, or no heights. They accept layers without thickness.
 WITHOUT_THICKNESS = ("json", "npz", "raw", "dxf", "geojson", "svg-layers", "png", "png-zip")
@@ -158,6 +158,7 @@ def write(
     pixel_mm: Optional[Lengths] = None,
     pixels: Optional[Pixels] = None,
     display_mm: Optional[Lengths] = None,
+    printer: Optional[str] = None,
     orientation: Optional[Orientation] = None,
     mirror: Optional[Mirror] = None,
     antialias: Optional[Antialias] = None,
@@ -186,6 +187,8 @@ def write(
     pixel_mm, pixels, display_mm: size of a pixel, number of pixels, and size of the display, each along x and y; any
         two of these three determine the third. Values not given are those of the printer; without a printer, pixels are
         0.05 mm wide.
+    printer: name of a resin printer, or a part of it that no other printer has: determines the display. `lamella printers`
+        lists them.
     orientation: "landscape" if x runs from left to right in an image, "portrait" if x runs upwards.
     mirror: "none", "x", "y" or "xy".
     antialias: 1 for black and white, by the centres of pixels; 2 to 64 for grey values, which are the covered fractions
@@ -392,6 +395,7 @@ def convert(
     pixel_mm: Optional[Lengths] = None,
     pixels: Optional[Pixels] = None,
     display_mm: Optional[Lengths] = None,
+    printer: Optional[str] = None,
     orientation: Optional[Orientation] = None,
     mirror: Optional[Mirror] = None,
     antialias: Optional[Antialias] = None,

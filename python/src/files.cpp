@@ -204,6 +204,8 @@ LayerWriteOptions write_options(const py::dict& given) {
     image.pixel_mm = along_xy<double>(given, "pixel_mm");
     image.pixels = along_xy<std::uint32_t>(given, "pixels");
     image.display_mm = along_xy<double>(given, "display_mm");
+    if (const auto printer = option<std::string>(given, "printer"))
+        options.printer = &find_resin_printer(*printer);
     if (const auto orientation = option<std::string>(given, "orientation"))
         image.portrait = *orientation == "portrait";
     if (const auto mirror = option<std::string>(given, "mirror")) {

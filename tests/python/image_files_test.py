@@ -12,6 +12,7 @@ IMAGES = [
      ["--pixel-size", 0.5, "--orientation", "portrait", "--mirror", "xy", "--gamma", 2.5]),
     ("png-zip", {"pixel_mm": 0.5, "mirror": "y"}, ["--pixel-size", 0.5, "--mirror", "y"]),
     ("sl1", {"mirror": "none", "orientation": "landscape"}, ["--mirror", "none", "--orientation", "landscape"]),
+    ("goo", {"printer": "mars 4 max"}, ["--printer", "mars 4 max"]),
     ("sl1s", {"exposure_s": 3, "first_exposure_s": 20.5, "fade_layers": 4},
      ["--exposure", 3, "--first-exposure", 20.5, "--fade-layers", 4]),
 ]  # fmt: skip
