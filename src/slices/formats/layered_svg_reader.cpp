@@ -127,7 +127,8 @@ class SvgReader {
     [[nodiscard]] XmlHandlers handlers(std::uint64_t& held) {
         return {.start =
                     [this](XmlName name, const XmlAttributes& attributes, std::size_t line) {
-                        start_element({name_, name.local, attributes, line + line_ - 1});
+                        start_element(
+                            {name_, name.local, attributes, static_cast<std::size_t>(line + line_ - 1)});
                     },
                 .end = [this](XmlName) { end_element(); },
                 .hold =
