@@ -174,7 +174,20 @@ for (const format of formats())
     const mesh = await makeBody('rook');
     writeFileSync(join(folder, 'rook.stl'), mesh.bytes);
     const vectors = ['ilt', 'ovf', '3mf-toolpath'].includes(format);
-    const options = { layerHeight: 4, ...(vectors ? { scan: true, hatchDistance: 0.5 } : {}), ...(format.startsWith('png') ? { pixelSize: 0.4 } : {}) };
+    const printers = {
+      goo: 'Mars 4 Max',
+      ctb: 'Elegoo Mars',
+      cbddlp: 'Anycubic Photon',
+      anycubic: 'Photon Mono X 6K',
+      'chitubox-zip': 'Kelant S400',
+      nanodlp: 'Athena 8K',
+    };
+    const options = {
+      layerHeight: 4,
+      ...(vectors ? { scan: true, hatchDistance: 0.5 } : {}),
+      ...(format.startsWith('png') ? { pixelSize: 0.4 } : {}),
+      ...(format in printers ? { printer: printers[format] } : {}),
+    };
     const given = words(options).filter((word) => word !== 'true');
     native('slice', 'rook.stl', '-o', 'layers', '--format', format, ...given);
     const { bytes } = await sliceToFile(mesh, format, options);

@@ -144,6 +144,8 @@ export interface WriteOptions extends CallOptions {
   pixelSize?: number | readonly [number, number];
   resolution?: readonly [number, number];
   displaySize?: readonly [number, number];
+  /** Name of a resin printer, or a part of it that no other has: determines the display. */
+  printer?: string;
   orientation?: 'landscape' | 'portrait';
   mirror?: 'none' | 'x' | 'y' | 'xy';
   antialias?: number;
