@@ -1,3 +1,5 @@
+#include "lamella/core/error.hpp"
+#include "lamella/core/printable.hpp"
 #include "lamella/slices/resin_printer.hpp"
 
 #include "command_line.hpp"
@@ -9,17 +11,36 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <memory>
 #include <string>
+#include <string_view>
+#include <vector>
 
 namespace lamella::app {
 namespace {
 
-int run_printers() {
+/// Returns whether a name has this word, in any case of letters.
+bool has_word(std::string_view name, std::string_view word) {
+    const auto lower = [](char c) {
+        return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+    };
+    return std::search(name.begin(), name.end(), word.begin(), word.end(),
+                       [&](char a, char b) { return lower(a) == lower(b); }) != name.end() ||
+           word.empty();
+}
+
+int run_printers(std::string_view word) {
+    std::vector<ResinPrinter> printers(resin_printers().begin(), resin_printers().end());
+    std::erase_if(printers, [&](const ResinPrinter& printer) { return !has_word(printer.name, word); });
+    if (printers.empty())
+        throw Error(
+            ErrorKind::usage,
+            fmt::format("no printer has '{}' in its name; lamella printers lists all", excerpt(word)));
     std::size_t widest = 0;
-    for (const ResinPrinter& printer : resin_printers())
+    for (const ResinPrinter& printer : printers)
         widest = std::max(widest, printer.name.size());
     std::string text;
-    for (const ResinPrinter& printer : resin_printers())
+    for (const ResinPrinter& printer : printers)
         text += fmt::format("{:<{}}  {:<8}  {:>5} x {:<5}  {:.6g} x {:.6g} x {:.6g} mm\n", printer.name,
                             widest, printer.extension, printer.pixels.x, printer.pixels.y,
                             printer.display_mm.x, printer.display_mm.y, printer.height_mm);
@@ -30,16 +51,25 @@ int run_printers() {
 } // namespace
 
 Command printers_command() {
+    const auto word = std::make_shared<std::string>();
     return {
         .name = "printers",
         .summary = "list resin printers",
         .description = "Lists the resin printers that the option --printer of other commands knows, with the "
                        "extension of their files, the pixels of their display, and its size with the largest "
                        "height of a part. Nobody has tried the files on most of these printers yet.",
+        .operands = {{.placeholder = "WORD",
+                      .help = "lists only printers with this word, or part of one, in their names",
+                      .required = false,
+                      .set =
+                          [word](const std::string& text) {
+                              *word = text;
+                          }}},
         .groups = {common_options(false)},
-        .examples = {{"lamella slice part.stl -o part.goo --printer \"Mars 4\"", "a job for one of them"}},
-        .run = [](const Context& /*context*/) {
-            return run_printers();
+        .examples = {{"lamella printers elegoo", "the printers of Elegoo"},
+                     {"lamella slice part.stl -o part.goo --printer \"Mars 4\"", "a job for one of them"}},
+        .run = [word](const Context& /*context*/) {
+            return run_printers(*word);
         }};
 }
 

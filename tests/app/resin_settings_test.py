@@ -67,6 +67,13 @@ class ResinSettings(ProgramTest):
             name, extension = line.split("  ")[0], line.split()[[part.startswith(".") for part in line.split()].index(True)]
             self.succeed("slice", "box.stl", "-o", "job" + extension, "--layer-height", "0.5", "--printer", name)
 
+    def test_printers_are_listed_by_a_word(self):
+        everything = self.succeed("printers").text.splitlines()
+        names = [line.split("  ")[0] for line in self.succeed("printers", "SATURN").text.splitlines()]
+        self.assertGreater(len(names), 1)
+        self.assertEqual(names, [name for name in (line.split("  ")[0] for line in everything) if "saturn" in name.lower()])
+        self.fail_with(2, "no printer has 'xyz' in its name", "printers", "xyz")
+
     def test_a_batch_writes_files_of_the_printer(self):
         self.path("parts").mkdir()
         self.box(size="1,1,1")
