@@ -34,6 +34,7 @@
 #include "lamella/contour/normal_form.hpp"
 #include "lamella/contour/open_gaps.hpp"
 #include "lamella/contour/stack_hash.hpp"
+#include "lamella/polygon/cells.hpp"
 #include "lamella/polygon/contour_defects.hpp"
 #include "lamella/polygon/crossings.hpp"
 #include "lamella/polygon/nesting.hpp"

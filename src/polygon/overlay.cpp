@@ -242,6 +242,10 @@ Overlaid Overlay::filled(const Material& material, Walls walls) const {
     return Filler(layer_, turns_, material, walls, contacts_, nest_, budget_, most_, closeness_).run();
 }
 
+std::vector<CellArea> Overlay::areas() const {
+    return cell_areas(layer_, turns_, contacts_, nest_, budget_, most_);
+}
+
 Layer united(const Layer& layer, const LayerLimits& limits) {
     return united(layer, Overlay(layer, limits));
 }

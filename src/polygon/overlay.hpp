@@ -7,6 +7,7 @@
 #include "lamella/polygon/fill.hpp"
 
 #include "core/layer_budget.hpp"
+#include "polygon/cell_areas.hpp"
 #include "polygon/chain_grid.hpp"
 #include "polygon/contacts.hpp"
 #include "polygon/crossing_pairs.hpp"
@@ -61,6 +62,8 @@ class Overlay {
 
     /// Returns the boundary of the material, with the open chains of the layer; see `fill`.
     [[nodiscard]] Overlaid filled(const Material& material, Walls walls = Walls::left) const;
+    /// Returns the areas of all pairs of winding numbers; see `cell_areas`.
+    [[nodiscard]] std::vector<CellArea> areas() const;
     /// Returns the nesting of the rings of both operands together.
     [[nodiscard]] const Nesting& nest() const noexcept { return nest_.nesting; }
 
