@@ -17,6 +17,7 @@
 #include "numbers.hpp"
 #include "options.hpp"
 #include "page_notes.hpp"
+#include "print_check_report.hpp"
 #include "repair_options.hpp"
 #include "run_warnings.hpp"
 #include "scan_figures.hpp"
@@ -73,6 +74,8 @@ struct SliceArguments {
     std::string engine;
     bool inspect = false;
     bool strict = false;
+    bool check = false;
+    PrintCheckArguments checking;
     LayerStepOptions making;
     bool scan = false;
     ScanArguments scanning;
@@ -190,7 +193,7 @@ OptionGroup shard_options(SliceArguments& target) {
 OptionGroup checking_options(SliceArguments& target) {
     Option engine = choice("engine", "NAME", "the slicing algorithm", names_of(engines()), target.engine);
     engine.preset = engines().front().name;
-    return {
+    OptionGroup group{
         "checks",
         "Checks and engine",
         {std::move(engine),
@@ -198,8 +201,16 @@ OptionGroup checking_options(SliceArguments& target) {
               target.inspect),
          flag("strict",
               "treat as errors: defects of the file or the mesh, data that the format cannot store, material "
-              "that no scan vector reaches, steps that leave nothing; write no file",
-              target.strict)}};
+              "that no scan vector reaches, steps that leave nothing, findings of --check; write no file",
+              target.strict),
+         flag("check",
+              "find islands, overhangs and enclosed resin, as lamella check does, for --stats and --report",
+              target.check)}};
+    for (Option& option : print_check_options(target.checking)) {
+        option.goes_with = "check";
+        group.options.push_back(std::move(option));
+    }
+    return group;
 }
 
 OptionGroup timed_run_options(SliceArguments& target) {
@@ -305,6 +316,8 @@ FileJob make_job(const SliceArguments& arguments) {
     job.strict = arguments.strict;
     job.steps = arguments.making.steps();
     job.scan = strategy_of(arguments);
+    if (arguments.check)
+        job.check = arguments.checking.options(job.max_memory);
     job.layer_statistics = !arguments.stats.empty() || (!arguments.report.empty() && job.steps.any());
     job.output = arguments.output;
     if (!job.output.empty()) {
@@ -351,6 +364,8 @@ std::string summary(const FileJob& job, const FileResult& result) {
         text += fmt::format("changed  {}\n", changes_text(job.steps, *result.changes));
     if (job.scan)
         text += fmt::format("scan     {}\n", scan_text(result.exposures));
+    if (result.check)
+        text += fmt::format("checked  for printing\n{}", print_check_text(*result.check));
     using Seconds = FileResult::Seconds;
     std::string stages;
     for (const auto& [stage, seconds] : {std::pair(stage_name(Stage::read), &Seconds::read),

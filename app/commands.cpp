@@ -10,9 +10,9 @@ namespace lamella::app {
 
 std::vector<Command> all_commands() {
     std::vector<Command> commands{
-        slice_command(), info_command(),     verify_command(),     compare_command(), convert_command(),
-        scan_command(),  strategy_command(), printers_command(),   resin_command(),   merge_command(),
-        view_command(),  make_command(),     completion_command(), help_command()};
+        slice_command(),   info_command(), check_command(),    verify_command(),     compare_command(),
+        convert_command(), scan_command(), strategy_command(), printers_command(),   resin_command(),
+        merge_command(),   view_command(), make_command(),     completion_command(), help_command()};
     std::vector<std::string> sections;
     for (const Command& command : commands)
         for (const OptionGroup& group : command.groups)
@@ -32,7 +32,8 @@ std::span<const ExitCode> exit_codes() noexcept {
              "list of heights; also a part that does not fit the display, the build volume or 16-bit "
              "coordinates"},
          {3, "an input cannot be read or holds nothing to work on"},
-         {4, "defects: of the mesh with --strict, or a slice file that fails its check (verify, compare)"},
+         {4, "defects: of the mesh with --strict, or layers that fail a check (verify, compare, check "
+             "--strict)"},
          {5, "a limit was hit, such as memory or --timeout"},
          {6, "an output cannot be written; nothing was left at its path, but other outputs of the run may be "
              "complete"},

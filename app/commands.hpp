@@ -12,6 +12,7 @@ namespace lamella::app {
 /// stands for this process alone.
 [[nodiscard]] Command slice_command(Communicator* team = nullptr);
 [[nodiscard]] Command info_command();
+[[nodiscard]] Command check_command();
 [[nodiscard]] Command compare_command();
 [[nodiscard]] Command verify_command();
 [[nodiscard]] Command convert_command();

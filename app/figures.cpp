@@ -7,6 +7,7 @@
 #include "failure.hpp"
 #include "numbers.hpp"
 #include "options.hpp"
+#include "print_check_report.hpp"
 #include "repair_options.hpp"
 #include "scan_figures.hpp"
 #include "strategy_file.hpp"
@@ -428,6 +429,8 @@ Json stats_json(const Command& command, const FileJob& job, const FileResult& re
         }
     }
     add_findings(stats, result);
+    if (result.check)
+        stats["check"] = print_check_json(*result.check);
     if (Json near = near_faces_json(result); !near.empty())
         stats["near_faces"] = std::move(near);
     if (job.repair.close_gaps_mm)

@@ -19,6 +19,7 @@
 #include "lamella/jobs/layer_findings.hpp"
 #include "lamella/jobs/merge.hpp"
 #include "lamella/jobs/plate.hpp"
+#include "lamella/jobs/print_check.hpp"
 #include "lamella/jobs/processes.hpp"
 #include "lamella/jobs/scan_layers.hpp"
 #include "lamella/jobs/slice_file.hpp"

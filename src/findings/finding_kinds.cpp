@@ -269,6 +269,75 @@ constexpr std::array kinds{
         .many = "parts overlap in {amount:.4g} mm2 {on_layers}, where the material is exposed more "
                 "than once: move them apart, or unite them by `unite_parts`",
         .unit = "mm2"},
+    FindingDescription{.kind = FindingKind::islands,
+                       .name = "islands",
+                       .origin = FindingOrigin::print,
+                       .one = "{count} island, material that begins in the resin without support: {place}; "
+                              "support it, or turn the part",
+                       .many = "{count} islands, material that begins in the resin without support: the "
+                               "lowest {place}; support them, or turn the part",
+                       .unit = "mm3",
+                       .count_key = "islands",
+                       .amount_key = "islands_mm3"},
+    FindingDescription{.kind = FindingKind::loose_supports,
+                       .name = "loose_supports",
+                       .origin = FindingOrigin::print,
+                       .one = "{count} support begins in the resin: {place}",
+                       .many = "{count} supports begin in the resin: the lowest {place}",
+                       .unit = "mm3",
+                       .count_key = "loose_supports",
+                       .amount_key = "loose_supports_mm3"},
+    FindingDescription{.kind = FindingKind::overhangs,
+                       .name = "overhangs",
+                       .severity = Severity::note,
+                       .origin = FindingOrigin::print,
+                       .one = "{count} overhang that the layer below does not carry ({amount:.4g} mm2, up to "
+                              "{largest:.3g} mm wide): {where}",
+                       .many = "{count} overhangs that the layer below does not carry ({amount:.4g} mm2, up "
+                               "to {largest:.3g} mm wide): {where}",
+                       .unit = "mm2",
+                       .count_key = "overhangs",
+                       .amount_key = "overhangs_mm2",
+                       .layer_amount_key = "overhangs_mm2",
+                       .largest_key = "widest_overhang_mm"},
+    FindingDescription{
+        .kind = FindingKind::cups,
+        .name = "cups",
+        .origin = FindingOrigin::print,
+        .one = "{count} cup ({amount:.4g} mm3): {place}; lifting the plate makes a vacuum in it, which a "
+               "hole near its lower end prevents",
+        .many = "{count} cups ({amount:.4g} mm3): the lowest {place}; lifting the plate makes a vacuum in "
+                "them, which a hole near the lower end prevents",
+        .unit = "mm3",
+        .count_key = "cups",
+        .amount_key = "cups_mm3"},
+    FindingDescription{.kind = FindingKind::traps,
+                       .name = "traps",
+                       .origin = FindingOrigin::print,
+                       .one = "{count} trap, a closed space in which {amount:.4g} mm3 of resin remain: "
+                              "{place}; a hole lets the resin out",
+                       .many = "{count} traps, closed spaces in which {amount:.4g} mm3 of resin remain: the "
+                               "lowest {place}; holes let the resin out",
+                       .unit = "mm3",
+                       .count_key = "traps",
+                       .amount_key = "traps_mm3"},
+    FindingDescription{.kind = FindingKind::empty_layers,
+                       .name = "empty_layers",
+                       .origin = FindingOrigin::print,
+                       .one = "{count} layer has no material though layers below and above have some: at z "
+                              "= {z:.6g} mm",
+                       .many = "{count} layers have no material though layers below and above have some: "
+                               "the lowest at z = {z:.6g} mm",
+                       .count_key = "empty_layers"},
+    FindingDescription{.kind = FindingKind::area_jumps,
+                       .name = "area_jumps",
+                       .severity = Severity::note,
+                       .origin = FindingOrigin::print,
+                       .one = "{count} layer has more than 1.5 times the area of the layer below: at z = "
+                              "{z:.6g} mm; peeling it off the film takes more force",
+                       .many = "{count} layers have more than 1.5 times the area of the layer below: the "
+                               "lowest at z = {z:.6g} mm; peeling them off the film takes more force",
+                       .count_key = "area_jumps"},
     FindingDescription{.kind = FindingKind::rounded_points,
                        .name = "rounded_points",
                        .origin = FindingOrigin::output,

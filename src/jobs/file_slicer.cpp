@@ -72,6 +72,7 @@ LayerJob layer_job(const FileJob& job, const Plate& plate, const LayerLimits& li
                     .close_gaps_mm = job.repair.close_gaps_mm,
                     .steps = job.steps,
                     .scan = job.scan,
+                    .check = job.check,
                     .statistics = job.layer_statistics,
                     .limits = limits};
     const auto add_file = [&](std::size_t shape) {
@@ -173,6 +174,11 @@ void check_job(const FileJob& job) {
     check_steps(job.steps);
     if (job.scan)
         check_strategy(*job.scan);
+    if (job.check) {
+        check(*job.check);
+        if (job.shard)
+            throw Error(ErrorKind::usage, "the check of a print needs all layers, not those of a shard");
+    }
 }
 
 /// Returns the visitor that finds near faces among the sliced triangles. It is empty if triangles stay in
@@ -205,7 +211,10 @@ void add_missing_contours(FileResult& result) {
 void refuse_defects(const FileJob& job, const FileResult& result) {
     if (!job.strict)
         return;
-    if (const Finding* found = result.findings.first(Severity::warning); found != nullptr)
+    const Finding* found = result.findings.first(Severity::warning);
+    if (found == nullptr && result.check)
+        found = result.check->findings.first(Severity::warning);
+    if (found != nullptr)
         throw Error(ErrorKind::defect,
                     fmt::format("{}: {}",
                                 found->file == Finding::all_files ? name_of(job.inputs)
@@ -370,6 +379,7 @@ FileResult FileSlicer::finish(JobOutput& output) {
                         .amount = near.area_mm2,
                         .largest = near.farthest_mm});
     totals.store_in(result_);
+    result_.check = processor_->take_check();
     if (!job_.shard) // if a shard has no contours, other shards may still have some
         add_missing_contours(result_);
     refuse_defects(job_, result_);

@@ -6,7 +6,7 @@
 
 #include "core/byte_amount.hpp"
 #include "jobs/job_memory.hpp"
-#include "jobs/layer_window.hpp"
+#include "jobs/plane_window.hpp"
 #include "jobs/material_surface.hpp"
 #include "jobs/plate_builder.hpp"
 #include "jobs/plate_names.hpp"

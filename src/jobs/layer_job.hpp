@@ -5,6 +5,7 @@
 #include "lamella/contour/rounding.hpp"
 #include "lamella/core/layer_limits.hpp"
 #include "lamella/jobs/plate.hpp"
+#include "lamella/jobs/print_check.hpp"
 #include "lamella/polygon/layer_steps.hpp"
 #include "lamella/scan/strategy.hpp"
 
@@ -33,6 +34,7 @@ struct LayerJob {
     std::optional<double> close_gaps_mm = {}; ///< see RepairPolicies
     LayerSteps steps = {};
     std::optional<ScanStrategy> scan = {};
+    std::optional<PrintCheckOptions> check = {};
     bool statistics = false; ///< measures and hashes every layer
     LayerLimits limits = {};
 };

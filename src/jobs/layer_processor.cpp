@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <functional>
+#include <memory>
 #include <utility>
 
 namespace lamella {
@@ -28,14 +29,15 @@ LayerProcessor::LayerProcessor(LayerJob job, std::span<const PlannedLayer> plane
                                PlaneRange mine, JobOutput& output)
     : job_(std::move(job)), mine_(mine), caches_(job_.supports.size()),
       totals_(job_, planes.subspan(mine.begin, mine.size())), output_(output),
-      window_(
-          sliced, mine, job_.scan ? job_.scan->downskin.layers : 0, job_.scan ? job_.scan->upskin.layers : 0,
-          [this](std::size_t part, const Layer& layer) {
-              return naming(job_.names[part], [&] { return ScanLayer(layer, job_.rounding, job_.limits); });
-          },
-          [this](const PlaneLayers& plane) { return formatted(vectors_of(plane)); }) {
+      window_(sliced, mine, job_.scan ? job_.scan->downskin.layers : 0,
+              job_.scan ? job_.scan->upskin.layers : 0,
+              [this](const PlaneNeighbours<std::vector<ScanLayer>>& plane) {
+                  return formatted(vectors_of(plane));
+              }) {
     if (job_.scan && job_.scan->unite_parts)
         job_.objects.assign(job_.objects.size(), 0);
+    if (job_.check)
+        checker_.emplace(*job_.check, mine, job_.supports, job_.rounding, job_.limits);
 }
 
 void LayerProcessor::set_times(FileResult::Seconds& seconds) const noexcept {
@@ -61,6 +63,7 @@ Commit LayerProcessor::prepare(std::uint32_t number, Plane bodies) {
         count(stepping, step_nanoseconds_);
         parts = std::move(material.parts);
     }
+    Commit check = checked(number, parts);
     UnitedParts united;
     std::vector<Layer> separate; // the parts before they are united
     if (job_.scan && parts.size() > 1) {
@@ -78,7 +81,27 @@ Commit LayerProcessor::prepare(std::uint32_t number, Plane bodies) {
             if (united.overlaps_mm2[i] > job_.scan->accepted_mm2)
                 totals_.add_overlap(number - mine_.begin, i, united.overlaps_mm2[i]);
     }
-    return timed(job_.scan ? window_.prepare(number, parts) : formatted(Plane(std::move(parts))));
+    Commit write = timed(job_.scan ? with_neighbours(number, parts) : formatted(Plane(std::move(parts))));
+    if (!check)
+        return write;
+    return [check = std::move(check), write = std::move(write)](Completions& after) {
+        check.in_order(after);
+        if (write)
+            write.in_order(after);
+    };
+}
+
+/// Passes a plane that is written to the check of the print, if there is one.
+Commit LayerProcessor::checked(std::uint32_t number, std::span<const Layer> parts) {
+    if (!checker_ || number < mine_.begin || number >= mine_.end)
+        return {};
+    return checker_->prepare(number, parts);
+}
+
+std::optional<PrintCheck> LayerProcessor::take_check() {
+    if (!checker_)
+        return std::nullopt;
+    return std::move(*checker_).result();
 }
 
 /// Prepares a plane for the output.
@@ -135,10 +158,27 @@ std::vector<InvertedRings> LayerProcessor::inverted_of_united(std::span<const La
     return inverted;
 }
 
-Plane LayerProcessor::vectors_of(const PlaneLayers& plane) {
+/// Passes a plane to the window. Equal layers of adjacent planes share their points.
+Commit LayerProcessor::with_neighbours(std::uint32_t number, std::span<const Layer> parts) {
+    std::vector<ScanLayer> layers;
+    for (std::size_t part = 0; part < parts.size(); ++part)
+        layers.push_back(
+            naming(job_.names[part], [&] { return ScanLayer(parts[part], job_.rounding, job_.limits); }));
+    if (const auto beside = window_.held_beside(number))
+        for (std::size_t part = 0; part < layers.size(); ++part)
+            layers[part].share_points((*beside)[part]);
+    return window_.prepare(number, std::make_shared<const std::vector<ScanLayer>>(std::move(layers)));
+}
+
+Plane LayerProcessor::vectors_of(const PlaneNeighbours<std::vector<ScanLayer>>& plane) {
     const Stopwatch scanning;
+    PlaneLayers layers{.plane = plane.plane, .parts = *plane.own};
+    for (const std::vector<ScanLayer>* below : plane.below)
+        layers.below.emplace_back(*below);
+    for (const std::vector<ScanLayer>* above : plane.above)
+        layers.above.emplace_back(*above);
     PlaneVectors vectors =
-        scan_plane(plane, job_.supports, job_.names, *job_.scan, job_.written, caches_, job_.limits);
+        scan_plane(layers, job_.supports, job_.names, *job_.scan, job_.written, caches_, job_.limits);
     count(scanning, scan_nanoseconds_);
     if (job_.steps.any() || !job_.negatives.empty())
         vectors.inverted.clear(); // counted by inverted_of

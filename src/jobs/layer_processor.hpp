@@ -12,11 +12,13 @@
 #include "jobs/job_output.hpp"
 #include "jobs/layer_job.hpp"
 #include "jobs/layer_totals.hpp"
-#include "jobs/layer_window.hpp"
 #include "jobs/part_overlaps.hpp"
+#include "jobs/plane_window.hpp"
+#include "jobs/print_checker.hpp"
 
 #include <atomic>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -36,6 +38,8 @@ class LayerProcessor {
     [[nodiscard]] Commit prepare(std::uint32_t number, Plane bodies);
 
     [[nodiscard]] LayerTotals& totals() noexcept { return totals_; }
+    /// Returns the check of the print, if the job has one. Call it once, after all layers were added.
+    [[nodiscard]] std::optional<PrintCheck> take_check();
     /// Sets the seconds of layer steps, of scan vectors, of formatting and of writing, each summed over all
     /// threads, and of what is done in order.
     void set_times(FileResult::Seconds& seconds) const noexcept;
@@ -44,16 +48,19 @@ class LayerProcessor {
     [[nodiscard]] std::vector<InvertedRings> inverted_of(std::span<const Layer> bodies) const;
     [[nodiscard]] std::vector<InvertedRings> inverted_of_united(std::span<const Layer> parts,
                                                                 const UnitedParts& united) const;
-    [[nodiscard]] Plane vectors_of(const PlaneLayers& plane);
+    [[nodiscard]] Commit with_neighbours(std::uint32_t number, std::span<const Layer> parts);
+    [[nodiscard]] Plane vectors_of(const PlaneNeighbours<std::vector<ScanLayer>>& plane);
     [[nodiscard]] Commit formatted(const Plane& plane);
     [[nodiscard]] Commit timed(Commit commit);
+    [[nodiscard]] Commit checked(std::uint32_t number, std::span<const Layer> parts);
 
     LayerJob job_;
     PlaneRange mine_;
     std::vector<InsetCache> caches_; ///< one for each part
     LayerTotals totals_;
     JobOutput& output_;
-    LayerWindow window_;
+    PlaneWindow<std::vector<ScanLayer>> window_;
+    std::optional<PrintChecker> checker_;
     std::atomic<std::uint64_t> step_nanoseconds_{0};
     std::atomic<std::uint64_t> scan_nanoseconds_{0};
     std::atomic<std::uint64_t> format_nanoseconds_{0};

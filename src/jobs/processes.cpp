@@ -22,6 +22,10 @@ void check_shared_job(const FileJob& job) {
     if (job.shard)
         throw Error(ErrorKind::usage,
                     "processes share out all layers among themselves, not those of a shard");
+    if (job.check)
+        throw Error(ErrorKind::usage,
+                    "no process has all layers for the check of the print; write a slice file, and let "
+                    "lamella check read it");
     if (!job.report.path.empty())
         throw Error(ErrorKind::usage,
                     "no process has all layers for a page of the run; write a slice file, and "

@@ -1,4 +1,5 @@
 #include "lamella/core/error.hpp"
+#include "lamella/inputs/read_file.hpp"
 #include "lamella/jobs/plate.hpp"
 #include "lamella/meshes/mesh_writer.hpp"
 

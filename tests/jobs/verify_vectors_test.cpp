@@ -1,3 +1,4 @@
+#include "lamella/inputs/read_file.hpp"
 #include "lamella/slices/layer_writer.hpp"
 
 #include "verify_vectors_fixture.hpp"

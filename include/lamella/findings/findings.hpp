@@ -55,6 +55,15 @@ enum class FindingKind : std::uint32_t {
     unreached_material,   ///< material that no scan vector reaches
     overlapping_parts,    ///< material of several parts, which scan vectors expose several times
 
+    // Found by the check of a print.
+    islands,        ///< material that begins without material below it
+    loose_supports, ///< the same of parts that are supports
+    overhangs,      ///< areas that the layer below does not carry
+    cups,           ///< spaces that are enclosed while they are printed
+    traps,          ///< spaces that remain enclosed
+    empty_layers,   ///< layers without material between layers with material
+    area_jumps,     ///< layers with a much larger area than the layer below
+
     // Content that the format of an output cannot hold.
     rounded_points,        ///< contours whose points are moved noticeably; the amount is the merged points
     vanished_contours,     ///< contours without any point after rounding
@@ -120,6 +129,7 @@ enum class FindingOrigin : std::uint8_t {
     layers,            ///< found by the check of layers
     vectors,           ///< found by the check of scan vectors
     layers_or_vectors, ///< found by both checks
+    print,             ///< found by the check of a print
     output,            ///< lost on the way to a file
     input,             ///< an irregularity of a slice file that was read
 };

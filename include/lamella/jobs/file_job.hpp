@@ -4,6 +4,7 @@
 
 #include "lamella/core/point.hpp"
 #include "lamella/jobs/plate.hpp"
+#include "lamella/jobs/print_check.hpp"
 #include "lamella/jobs/repair_policies.hpp"
 #include "lamella/meshes/mesh_role.hpp"
 #include "lamella/polygon/layer_steps.hpp"
@@ -80,6 +81,10 @@ struct FileJob {
     bool strict = false;
     /// Measures and hashes every layer.
     bool layer_statistics = false;
+    /// If set, checks whether the layers can be printed one on the other, after `steps`; `strict` applies to
+    /// the findings. The check needs all layers: Error{usage} with `shard` and for several processes. Its
+    /// `max_memory` is that of the job.
+    std::optional<PrintCheckOptions> check;
 
     /// Steps applied to the layers of each part before they are written.
     LayerSteps steps;

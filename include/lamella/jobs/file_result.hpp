@@ -9,6 +9,7 @@
 #include "lamella/core/point.hpp"
 #include "lamella/findings/findings.hpp"
 #include "lamella/jobs/plate.hpp"
+#include "lamella/jobs/print_check.hpp"
 #include "lamella/jobs/repair_policies.hpp"
 #include "lamella/mesh/inspect.hpp"
 #include "lamella/polygon/layer_steps.hpp"
@@ -122,6 +123,8 @@ struct FileResult {
     std::uint64_t bytes = 0; ///< number of bytes written
     Findings losses;         ///< in the slice file, caused by its format; see LayerWriter::findings
     Findings report_losses;  ///< in the page (FileJob::report)
+
+    std::optional<PrintCheck> check; ///< with FileJob::check
 
     /// Statistics of each layer in ascending z, and the volume as the sum of area times thickness; with
     /// FileJob::layer_statistics.

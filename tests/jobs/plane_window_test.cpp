@@ -1,28 +1,23 @@
-#include "fixtures/layers.hpp"
 #include "fixtures/random.hpp"
-#include "jobs/layer_window.hpp"
+#include "jobs/plane_window.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
 #include <atomic>
 #include <cstdint>
-#include <functional>
+#include <memory>
 #include <mutex>
-#include <set>
 #include <thread>
 #include <utility>
 #include <vector>
 
-namespace lamella::layer_window_cases {
+namespace lamella::plane_window_cases {
 namespace {
 
 using Indices = std::vector<std::uint64_t>;
 
-constexpr auto as_it_is = [](std::size_t, const Layer& layer) {
-    return ScanLayer(layer);
-};
+using Window = PlaneWindow<std::uint64_t>;
 
 /// What a plane was worked on with.
 struct Seen {
@@ -37,18 +32,13 @@ struct Record {
     std::vector<Seen> worked_on;
     Indices written;
 
-    [[nodiscard]] LayerWindow::Work work() {
-        return [this](const PlaneLayers& plane) -> Commit {
-            const auto index = [](const std::span<const ScanLayer>& parts) {
-                EXPECT_EQ(parts.size(), 2U);
-                EXPECT_EQ(parts[0].layer().index, parts[1].layer().index);
-                return parts[0].layer().index;
-            };
-            Seen seen{index(plane.parts), {}, {}};
-            for (const std::span<const ScanLayer>& parts : plane.below)
-                seen.below.push_back(index(parts));
-            for (const std::span<const ScanLayer>& parts : plane.above)
-                seen.above.push_back(index(parts));
+    [[nodiscard]] Window::Work work() {
+        return [this](const PlaneNeighbours<std::uint64_t>& plane) -> Commit {
+            Seen seen{*plane.own, {}, {}};
+            for (const std::uint64_t* number : plane.below)
+                seen.below.push_back(*number);
+            for (const std::uint64_t* number : plane.above)
+                seen.above.push_back(*number);
             const std::uint64_t number = seen.plane;
             EXPECT_EQ(plane.plane, number);
             const std::lock_guard lock(mutex);
@@ -60,10 +50,8 @@ struct Record {
     }
 };
 
-std::array<Layer, 2> plane(std::uint32_t number) {
-    std::array<Layer, 2> parts;
-    parts[0].index = parts[1].index = number;
-    return parts;
+Window::Shared plane(std::uint32_t number) {
+    return std::make_shared<const std::uint64_t>(number);
 }
 
 /// Each of the wanted planes once, in order, with all of its neighbours among those that came.
@@ -85,7 +73,7 @@ void expect_complete(const Record& record, PlaneRange coming, PlaneRange wanted,
     }
 }
 
-TEST(LayerWindow, GivesEachPlaneItsNeighboursInWhateverOrderPlanesCome) {
+TEST(PlaneWindow, GivesEachPlaneItsNeighboursInWhateverOrderPlanesCome) {
     test::Random random(1);
     for (int round = 0; round < 300; ++round) {
         const auto number = [&](std::int64_t most) {
@@ -98,7 +86,7 @@ TEST(LayerWindow, GivesEachPlaneItsNeighboursInWhateverOrderPlanesCome) {
         const std::uint32_t below = number(4);
         const std::uint32_t above = number(4);
         Record record;
-        LayerWindow window(coming, wanted, below, above, as_it_is, record.work());
+        Window window(coming, wanted, below, above, record.work());
         // Some planes at a time in parallel, here in any order; then their halves in order.
         for (std::uint32_t at = coming.begin; at < coming.end;) {
             const std::uint32_t end = std::min(coming.end, at + 1 + number(6));
@@ -119,10 +107,10 @@ TEST(LayerWindow, GivesEachPlaneItsNeighboursInWhateverOrderPlanesCome) {
     }
 }
 
-TEST(LayerWindow, HoldsNoMoreThanTheNeighbours) {
+TEST(PlaneWindow, HoldsNoMoreThanTheNeighbours) {
     constexpr std::uint32_t planes = 1000;
     Record record;
-    LayerWindow window({0, planes}, {0, planes}, 3, 2, as_it_is, record.work());
+    Window window({0, planes}, {0, planes}, 3, 2, record.work());
     for (std::uint32_t p = 0; p < planes; ++p) {
         window.prepare(p, plane(p))();
         EXPECT_LE(window.held(), 5U);
@@ -131,9 +119,9 @@ TEST(LayerWindow, HoldsNoMoreThanTheNeighbours) {
     EXPECT_EQ(window.held(), 0U);
 }
 
-TEST(LayerWindow, WaitsForNothingWithoutNeighbours) {
+TEST(PlaneWindow, WaitsForNothingWithoutNeighbours) {
     Record record;
-    LayerWindow window({4, 10}, {4, 10}, 0, 0, as_it_is, record.work());
+    Window window({4, 10}, {4, 10}, 0, 0, record.work());
     for (std::uint32_t p = 4; p < 10; ++p) {
         const Commit write = window.prepare(p, plane(p));
         EXPECT_EQ(record.worked_on.size(), p - 3);
@@ -143,24 +131,22 @@ TEST(LayerWindow, WaitsForNothingWithoutNeighbours) {
     }
 }
 
-TEST(LayerWindow, SharesThePointsOfLayersThatAreTheSame) {
-    std::set<const Point2*> points;
-    LayerWindow window({0, 9}, {0, 9}, 1, 1, as_it_is, [&](const PlaneLayers& plane) {
-        points.insert(plane.parts[0].layer().points.data());
-        return Commit();
-    });
-    for (std::uint32_t i = 0; i < 9; ++i) {
-        const double size = i < 5 ? 4 : 3; // two blocks, one on the other
-        const std::array<Layer, 1> parts{test::layer_of({test::rectangle(0, 0, size, size)})};
-        static_cast<void>(window.prepare(i, parts));
+TEST(PlaneWindow, ReturnsTheContentOfAnAdjacentPlaneThatIsHeld) {
+    Record record;
+    Window window({0, 9}, {0, 9}, 1, 1, record.work());
+    EXPECT_EQ(window.held_beside(3), nullptr);
+    const Commit third = window.prepare(3, plane(3));
+    for (const std::uint32_t beside : {2U, 4U}) {
+        ASSERT_NE(window.held_beside(beside), nullptr);
+        EXPECT_EQ(*window.held_beside(beside), 3U);
     }
-    EXPECT_EQ(points.size(), 2U);
+    EXPECT_EQ(window.held_beside(5), nullptr);
 }
 
-TEST(LayerWindow, TakesPlanesFromManyThreads) {
+TEST(PlaneWindow, TakesPlanesFromManyThreads) {
     constexpr std::uint32_t planes = 400;
     Record record;
-    LayerWindow window({0, planes}, {10, planes - 10}, 4, 4, as_it_is, record.work());
+    Window window({0, planes}, {10, planes - 10}, 4, 4, record.work());
     std::vector<Commit> in_order(planes);
     std::atomic<std::uint32_t> next{0};
     std::vector<std::thread> threads;
@@ -178,4 +164,4 @@ TEST(LayerWindow, TakesPlanesFromManyThreads) {
 }
 
 } // namespace
-} // namespace lamella::layer_window_cases
+} // namespace lamella::plane_window_cases

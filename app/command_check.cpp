@@ -1,0 +1,169 @@
+#include "lamella/core/error.hpp"
+#include "lamella/inputs/read_file.hpp"
+#include "lamella/jobs/plate.hpp"
+#include "lamella/jobs/print_check.hpp"
+#include "lamella/jobs/slice_file.hpp"
+#include "lamella/system/whole_file.hpp"
+
+#include "command_line.hpp"
+#include "commands.hpp"
+#include "config_file.hpp"
+#include "failure.hpp"
+#include "figures.hpp"
+#include "layer_file.hpp"
+#include "layering_options.hpp"
+#include "numbers.hpp"
+#include "options.hpp"
+#include "print_check_report.hpp"
+#include "repair_options.hpp"
+#include "run_warnings.hpp"
+#include "standard_streams.hpp"
+#include "text_file.hpp"
+
+#include <fmt/format.h>
+
+#include <memory>
+#include <string>
+#include <utility>
+#include <variant>
+
+namespace lamella::app {
+namespace {
+
+struct CheckArguments {
+    std::string input;
+    PrintCheckArguments checking;
+    std::string stats;
+    bool strict = false;
+    bool json = false;
+    LayeringOptions layering;
+    PlacementOptions placement;
+    RepairPolicies repair;
+    LayerStepOptions making;
+    ReadLimits limits;
+    RunOptions run;
+
+    [[nodiscard]] std::uint64_t max_memory() const { return limits.max_memory.value_or(0); }
+};
+
+/// Slices a mesh, and checks its layers.
+PrintCheck check_mesh(const CheckArguments& arguments, MeshFile mesh, Messages& messages,
+                      const Execution& execution) {
+    FileJob job;
+    PlateInput input{.path = arguments.input};
+    input.unit_mm = arguments.placement.unit_mm();
+    input.placement = arguments.placement.pose();
+    job.inputs = {input};
+    job.layering = arguments.layering.layering(arguments.max_memory());
+    job.max_memory = arguments.max_memory();
+    job.repair = arguments.repair;
+    job.steps = arguments.making.steps();
+    job.check = arguments.checking.options(job.max_memory);
+    FileResult result = slice_file(job, load_plate(input, std::move(mesh), execution), execution);
+    PrintCheck check = std::move(*result.check);
+    result.check.reset(); // its findings are part of the output
+    for (const std::string& warning : run_warnings(job, result))
+        messages.warn(warning);
+    return check;
+}
+
+/// Checks the layers of a slice file.
+PrintCheck check_layers(const CheckArguments& arguments, const LayerFile& file, Messages& messages,
+                        const Execution& execution) {
+    for (const PartInfo& part : file.parts)
+        if (part.exposure)
+            throw Error(ErrorKind::input,
+                        fmt::format("{}: has scan vectors ({}), not the material of layers; check the mesh, "
+                                    "or the layers that the vectors are made of",
+                                    file.path, one_line(part.label)));
+    warn_about(file, file.warnings, false, messages);
+    return check_print(file, arguments.checking.options(arguments.max_memory()), execution);
+}
+
+Json check_stats(const Command& command, const CheckArguments& arguments, const PrintCheck& check) {
+    Json stats = {{"options", options_in_effect(command)}, {"input", arguments.input}};
+    stats["check"] = print_check_json(check);
+    Json& layers = stats["layers"] = Json::array();
+    for (const PeelArea& layer : check.layers)
+        layers.push_back(peel_json(layer));
+    return stats;
+}
+
+int run_check(const CheckArguments& arguments, const Context& context) {
+    check_outputs(context.command);
+    static_cast<void>(arguments.checking.options(0)); // before large files are read
+    const Execution execution = arguments.run.execution(context);
+    arguments.limits.prepare_memory();
+    if (!arguments.stats.empty())
+        check_writable(arguments.stats);
+    MeshReadOptions reading = arguments.limits.of_meshes();
+    reading.kept = KeptPlanes::if_faster;
+    auto read = read_any(arguments.input, reading, execution);
+    const auto* const file = std::get_if<LayerFile>(&read);
+    const PrintCheck check = file != nullptr ? check_layers(arguments, *file, context.messages, execution)
+                                             : check_mesh(arguments, std::move(std::get<MeshFile>(read)),
+                                                          context.messages, execution);
+    const bool ok = check.findings.first(Severity::warning) == nullptr;
+    if (!arguments.stats.empty()) {
+        const std::string text = json_text(check_stats(context.command, arguments, check));
+        if (arguments.stats == "-")
+            context.messages.result(text);
+        else
+            write_text_file(arguments.stats, text);
+    }
+    if (arguments.json) {
+        Json object = {{"path", arguments.input}, {"ok", ok}, {"layers", check.layers.size()}};
+        object.update(print_check_json(check));
+        context.messages.result(json_text(object));
+    } else if (arguments.stats != "-") {
+        context.messages.result(fmt::format(
+            "{}: {}, {}\n{}", one_line(input_name(arguments.input)), counted(check.layers.size(), "layer"),
+            ok ? "nothing found" : "not sound to print", print_check_text(check)));
+    }
+    if (arguments.strict && !ok)
+        throw Error(ErrorKind::defect, fmt::format("{}: the check failed", input_name(arguments.input)));
+    return 0;
+}
+
+} // namespace
+
+Command check_command() {
+    const auto arguments = std::make_shared<CheckArguments>();
+    OptionGroup checking{"checks", "Checks", print_check_options(arguments->checking)};
+    checking.options.push_back(output_file(
+        "stats", "write the areas of every layer as JSON, too; - is standard output", arguments->stats));
+    checking.options.push_back(
+        flag("strict", "end with exit code 4 if there is an island, a cup, a trap or an empty layer",
+             arguments->strict));
+    checking.options.push_back(flag("json", "print JSON", arguments->json));
+    return {
+        .name = "check",
+        .summary = "find islands, overhangs and enclosed resin in a print",
+        .description =
+            "Checks whether layers can be printed one on the other, as a resin printer does it. Islands are "
+            "material that begins in the resin, without material of the layer below. Overhangs are wider "
+            "than the layer below carries. Cups are spaces that are closed by material, and by the film of "
+            "the vat, while they are printed: lifting the plate makes a vacuum in them. Traps never open, "
+            "and resin stays in them. The layers are those of a slice file or of a job for a resin printer, "
+            "or a mesh is cut. Contours are compared exactly, without pixels.",
+        .operands = {{.placeholder = "FILE",
+                      .help = "a mesh or a slice file; - is standard input",
+                      .set =
+                          [arguments](const std::string& text) {
+                              arguments->input = text;
+                          }}},
+        .groups = {std::move(checking), layering_options(arguments->layering),
+                   placement_options(arguments->placement, {include_option(arguments->limits)}),
+                   repair_options(arguments->repair), layer_step_options(arguments->making),
+                   run_options(arguments->run, {max_triangles_option(arguments->limits),
+                                                max_memory_option(arguments->limits, "the file takes")}),
+                   common_options(true)},
+        .examples = {{"lamella check part.stl --layer-height 0.05", "before a part is printed"},
+                     {"lamella check part.stl --rotate-x 35 --strict", "in a script, for another pose"},
+                     {"lamella check part.cli --touch 0.05 --json", "layers of a slice file"}},
+        .run = [arguments](const Context& context) {
+            return run_check(*arguments, context);
+        }};
+}
+
+} // namespace lamella::app
