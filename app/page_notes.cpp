@@ -3,6 +3,7 @@
 #include "figures.hpp"
 #include "numbers.hpp"
 #include "options.hpp"
+#include "print_check_report.hpp"
 #include "scan_figures.hpp"
 #include "standard_streams.hpp"
 #include "viewer/viewer_page.hpp"
@@ -69,6 +70,10 @@ PageNotes run_notes(const FileResult& result) {
                                      "format", "write", "order", "end", "bytes"}))});
     if (!result.exposures.empty())
         notes.sections.push_back({"Scan vectors", as_facts(scan_figures(result.exposures))});
+    if (result.check) {
+        notes.sections.push_back(print_check_section(*result.check));
+        notes.locations = places_of(*result.check);
+    }
     for (const LayerStatistics& layer : result.layers)
         if (layer.changes.changed_layers > 0)
             notes.changes.push_back({layer.index, layer.changes});

@@ -2,10 +2,12 @@
 
 #include "numbers.hpp"
 #include "options.hpp"
+#include "page_notes.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -56,6 +58,19 @@ std::string end_of(const PrintCavity& cavity) {
                        cavity.trap()  ? "it stays closed"
                        : cavity.opens ? "then it opens"
                                       : "then material closes it");
+}
+
+/// Adds a mark for a region, unless there are enough of its kind.
+void add_mark(std::vector<PageLocation>& marks, const char* kind, const PrintRegion& region,
+              const std::string& end, std::uint64_t found) {
+    const auto of_kind = std::count_if(marks.begin(), marks.end(),
+                                       [&](const PageLocation& mark) { return mark.kind == kind; });
+    if (static_cast<std::uint64_t>(of_kind) < page_locations)
+        marks.push_back({.kind = kind,
+                         .text = region_text(region) + end,
+                         .points = {{region.centre.x, region.centre.y, region.bottom_mm},
+                                    {region.centre.x, region.centre.y, region.top_mm}},
+                         .found = found});
 }
 
 /// Returns the layer with the largest value.
@@ -127,6 +142,34 @@ Json print_check_json(const PrintCheck& check) {
     }
     object["findings"] = check.findings.texts();
     return object;
+}
+
+PageSection print_check_section(const PrintCheck& check) {
+    PageSection section{"Check of the print", {}};
+    for (const FindingDescription& kind : finding_kinds()) {
+        if (kind.origin != FindingOrigin::print)
+            continue;
+        const Finding& found = check.findings.of(kind.kind);
+        const Tone tone = found.count == 0                  ? Tone::good
+                          : kind.severity == Severity::note ? Tone::plain
+                                                            : Tone::warning;
+        std::string name = kind.name;
+        std::replace(name.begin(), name.end(), '_', ' ');
+        name[0] = static_cast<char>(std::toupper(name[0]));
+        section.facts.push_back({name, found.count == 0 ? "none" : grouped(found.count), tone});
+    }
+    return section;
+}
+
+std::vector<PageLocation> places_of(const PrintCheck& check) {
+    std::vector<PageLocation> marks;
+    for (const PrintIsland& island : check.islands)
+        add_mark(marks, island.support ? "loose support" : "island", island, end_of(island),
+                 check.findings.count(island.support ? FindingKind::loose_supports : FindingKind::islands));
+    for (const PrintCavity& cavity : check.cavities)
+        add_mark(marks, cavity.trap() ? "trap" : "cup", cavity, end_of(cavity),
+                 check.findings.count(cavity.trap() ? FindingKind::traps : FindingKind::cups));
+    return marks;
 }
 
 std::string print_check_text(const PrintCheck& check) {

@@ -3,6 +3,7 @@
 // Options and reports of the check of a print.
 
 #include "lamella/jobs/print_check.hpp"
+#include "lamella/slices/layer_page.hpp"
 
 #include "command.hpp"
 
@@ -28,5 +29,10 @@ struct PrintCheckArguments {
 [[nodiscard]] Json peel_json(const PeelArea& layer);
 /// Returns lines for people: the findings, and the first regions of each kind.
 [[nodiscard]] std::string print_check_text(const PrintCheck& check);
+
+/// Return a section of a page with the numbers of findings, and a mark for each of the first regions of each
+/// kind: a line over its heights, through the centroid of its first layer.
+[[nodiscard]] PageSection print_check_section(const PrintCheck& check);
+[[nodiscard]] std::vector<PageLocation> places_of(const PrintCheck& check);
 
 } // namespace lamella::app

@@ -45,6 +45,7 @@ from ._lamella import (
 from ._meshes import DefectPlaces, Inspection, Intersection, SelfIntersections, inspect, mend, read_mesh
 from ._methods import ContourDefect
 from ._plates import Part
+from ._printing import PrintCavity, PrintCheck, PrintIsland
 from ._scanning import PyslmLayer, ScanLayer, ScanStream, scan, to_pyslm
 from ._sections import Section, Slicer
 from ._slicing import Engine, engines, iter_layers, slice
@@ -73,6 +74,9 @@ __all__ = [
     "OutputError",
     "ParameterSet",
     "Part",
+    "PrintCavity",
+    "PrintCheck",
+    "PrintIsland",
     "PyslmLayer",
     "ScanFigures",
     "ScanLayer",

@@ -2,13 +2,13 @@
 
 # Printed by tools/python_stub.py.
 
-from typing import Any, ClassVar, Dict, Iterable, Iterator, List, Literal, Optional, Sequence, Tuple, Union, overload
+from typing import Any, Callable, ClassVar, Dict, Iterable, Iterator, List, Literal, Optional, Sequence, Tuple, Union, overload
 
 import numpy as np
 import numpy.typing as npt
 
 from ._arguments import Corners, FillRule, Readable
-from ._methods import ContourDefect, Contours, Window
+from ._methods import ContourDefect, Contours, PrintCheck, Window
 
 __version__: str
 
@@ -216,8 +216,13 @@ class Stack:
     @overload
     def __getitem__(self, index: Union[slice, Sequence[int], Sequence[bool], npt.NDArray[Any]]) -> Stack: ...
     def at(self, z: float) -> Layer: ...
+    def check(
+        self, *, touch: float = 0, overhang_angle: float = 45, threads: int = 0,
+        progress: Optional[Callable[[str, int, int], object]] = None
+    ) -> PrintCheck: ...
     def _repr_html_(self) -> str: ...
     def _write_page(self, arg0: Union[str, bytes], /) -> List[str]: ...
+    def _checked(self, arg0: float, arg1: float, arg2: int, arg3: Any, /) -> Dict[str, Any]: ...
 
 class Plan:
     def __len__(self) -> int: ...

@@ -18,6 +18,7 @@ import numpy.typing as npt
 from . import _arguments as check
 from ._errors import InputError, UsageError
 from ._looking import layer_svg, plot_layer, stack_html
+from ._printing import PrintCavity, PrintCheck, PrintIsland
 from ._shapely import contours_of, multi_polygon
 from ._warning import parts_lost, warn
 
@@ -301,6 +302,28 @@ class Stack(_Stack):
             return self[i]
         reach = f"they reach from {self.bottom[0]:g} to {self.top[-1]:g} mm" if len(self) else "the stack is empty"
         raise UsageError(f"z: there is no layer at {z:g} mm; {reach}")
+
+    def check(
+        self,
+        *,
+        touch: check.Distance = 0,
+        overhang_angle: check.Positive = 45,
+        threads: check.Threads = 0,
+        progress: Optional[check.Progress] = None,
+    ) -> PrintCheck:
+        """Finds what makes prints in resin fail: islands, overhangs, cups, traps, and empty layers. Parts that are
+        supports carry others.
+
+        touch: material that shares no more than this area with the layer below is an island, too, in square millimetres.
+        overhang_angle: the smallest angle between a surface and the plate at which each layer is carried by the one below,
+            in degrees.
+        threads: number of threads; 0 means one for each processor.
+        progress: called as progress(stage, done, total) from time to time, on the calling thread.
+        """
+        fields = self._checked(touch, overhang_angle, threads, progress)
+        fields["islands"] = [PrintIsland(*one) for one in fields["islands"]]
+        fields["cavities"] = [PrintCavity(*one) for one in fields["cavities"]]
+        return PrintCheck(**fields)
 
     def _repr_html_(self) -> str:
         return stack_html(self)

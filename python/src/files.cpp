@@ -2,6 +2,7 @@
 #include "lamella/core/error.hpp"
 #include "lamella/inputs/read_file.hpp"
 #include "lamella/jobs/layer_findings.hpp"
+#include "lamella/jobs/print_check.hpp"
 #include "lamella/jobs/verify.hpp"
 #include "lamella/meshes/mesh_writer.hpp"
 #include "lamella/polygon/compare.hpp"
@@ -415,6 +416,56 @@ vectors_verified(const py::object& source, const PlatePointer& plate,
     return {fields, message_texts(warnings)};
 }
 
+py::list regions_of(const std::vector<PrintIsland>& islands) {
+    py::list list;
+    for (const PrintIsland& island : islands)
+        list.append(py::make_tuple(island.layer, island.bottom_mm, island.top_mm,
+                                   std::pair(island.centre.x, island.centre.y), island.area_mm2,
+                                   island.largest_mm2, island.volume_mm3, island.joins, island.support));
+    return list;
+}
+
+py::list regions_of(const std::vector<PrintCavity>& cavities) {
+    py::list list;
+    for (const PrintCavity& cavity : cavities)
+        list.append(py::make_tuple(cavity.layer, cavity.bottom_mm, cavity.top_mm,
+                                   std::pair(cavity.centre.x, cavity.centre.y), cavity.area_mm2,
+                                   cavity.largest_mm2, cavity.volume_mm3, cavity.opens, cavity.on_plate));
+    return list;
+}
+
+/// Returns the fields of a lamella.PrintCheck.
+py::dict print_checked(const StackPointer& stack, double touch_mm2, double overhang_angle, unsigned threads,
+                       const py::object& progress) {
+    if (holds_scan_vectors(*stack))
+        throw Error(ErrorKind::usage, stack->path + " holds scan vectors, not the material of layers");
+    const PrintCheck found = result_of(threads, progress, [&](const Execution& execution) {
+        std::vector<LayerPart> parts;
+        for (const StackPointer& part : stack->parts.empty() ? std::vector{stack} : stack->parts)
+            parts.push_back({.label = part->label, .layers = plain(part->layers), .support = part->support});
+        return check_print(source_of(std::move(parts), stack->path, execution),
+                           {.touch_mm2 = touch_mm2, .overhang_angle = overhang_angle}, execution);
+    });
+    py::dict fields;
+    fields["ok"] = found.findings.first(Severity::warning) == nullptr;
+    fields["islands"] = regions_of(found.islands);
+    fields["cavities"] = regions_of(found.cavities);
+    for (const auto& [name, value] : {std::pair{"area", &PeelArea::area_mm2},
+                                      {"largest_area", &PeelArea::largest_mm2},
+                                      {"perimeter", &PeelArea::perimeter_mm},
+                                      {"exposed", &PeelArea::exposed_mm2},
+                                      {"overhang_area", &PeelArea::overhang_mm2},
+                                      {"overhang_width", &PeelArea::overhang_mm}}) {
+        py::array_t<double> values(static_cast<py::ssize_t>(found.layers.size()));
+        for (std::size_t i = 0; i < found.layers.size(); ++i)
+            values.mutable_at(static_cast<py::ssize_t>(i)) = found.layers[i].*value;
+        fields[name] = values;
+    }
+    fields["empty_layers"] = found.findings.count(FindingKind::empty_layers);
+    fields["findings"] = found.findings.texts();
+    return fields;
+}
+
 /// Returns the tolerance, a list of planes, and whether the stacks are cut at different heights. A plane has
 /// the indices of its layers in the stacks, or None, and `same`, `agree`, the distance and its location.
 py::tuple compared(const Stack& first, const Stack& second, std::optional<double> tolerance, unsigned threads,
@@ -469,6 +520,7 @@ void bind_files(py::module_& module) {
     module.def("verify", &verified);
     module.def("verify_vectors", &vectors_verified);
     module.def("compare", &compared);
+    stack.attr("_checked") = py::cpp_function(&print_checked, py::name("_checked"), py::is_method(stack));
     module.def("write_mesh", &write_mesh);
     py::class_<StackWriter>(module, "StackWriter")
         .def("write", &StackWriter::write)

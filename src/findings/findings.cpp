@@ -160,10 +160,12 @@ std::vector<FindingNumber> Findings::numbers(FindingOrigin check) const {
         else
             std::get<decltype(value)>(same->value) += value;
     };
+    const bool of_layers = check == FindingOrigin::layers || check == FindingOrigin::vectors;
     for (const FindingDescription& row : finding_kinds())
-        if (row.origin == check || row.origin == FindingOrigin::layers_or_vectors) {
+        if (row.origin == check || (of_layers && row.origin == FindingOrigin::layers_or_vectors)) {
             add(row.count_key, of(row.kind).count);
             add(row.amount_key, of(row.kind).amount);
+            add(row.largest_key, of(row.kind).largest);
         }
     return numbers;
 }

@@ -34,7 +34,7 @@ struct HistoryRegion {
     bool joined = false; ///< false if no cell of the next layer continues the region
 };
 
-/// What happens to the younger of two regions that become connected.
+/// The fate of the younger of two regions that become connected.
 enum class RegionMeeting : std::uint8_t {
     ends,   ///< it ends, as joined
     merges, ///< both are one region from then on

@@ -6,8 +6,8 @@
 
 #include "core/byte_amount.hpp"
 #include "jobs/job_memory.hpp"
-#include "jobs/plane_window.hpp"
 #include "jobs/material_surface.hpp"
+#include "jobs/plane_window.hpp"
 #include "jobs/plate_builder.hpp"
 #include "jobs/plate_names.hpp"
 

@@ -256,8 +256,7 @@ Finding finding_of_layers(FindingKind kind, const std::vector<PeelArea>& layers,
     return finding;
 }
 
-/// Returns whether the area of a layer is so much larger than that of the layer below that the force of
-/// peeling jumps.
+/// Returns whether the force of peeling jumps, because a layer has a much larger area than the layer below.
 bool area_jumps(const PeelArea& below, const PeelArea& layer) noexcept {
     constexpr double factor = 1.5;
     constexpr double least_mm2 = 20;

@@ -18,13 +18,13 @@ class CommandLine(ProgramTest):
 
     def test_every_command_that_cuts_a_mesh_snaps(self):
         cutting = [name for name in self.commands() if "--slice-at" in self.succeed(name, "--help").text]
-        self.assertEqual(sorted(cutting), ["slice", "verify", "view"])
+        self.assertEqual(sorted(cutting), ["check", "slice", "verify", "view"])
         for name in cutting:
             self.assertIn("--snap MM", self.succeed(name, "--help").text)
 
     def test_every_command_has_help(self):
         commands = self.commands()
-        self.assertEqual(commands, ["slice", "info", "verify", "compare", "convert", "scan", "strategy", "printers", "resin", "merge", "view", "make", "completion", "help"])
+        self.assertEqual(commands, ["slice", "info", "check", "verify", "compare", "convert", "scan", "strategy", "printers", "resin", "merge", "view", "make", "completion", "help"])
         for command in commands:
             with self.subTest(command):
                 text = self.succeed(command, "--help").text

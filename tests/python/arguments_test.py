@@ -96,6 +96,7 @@ CALLS = {
     "Layer.diagnose": (stack()[0].diagnose, {}),
     "Layer.image": (stack()[0].image, {"pixel_mm": 1}),
     "Stack.at": (stack().at, {"z": 1}),
+    "Stack.check": (stack().check, {}),
     "Layer.from_shapely": (lamella.Layer.from_shapely, {"geometry": Square(), "z": 1}),
     "Layer.filled": (stack()[0].filled, {}),
     "Layer.offset": (stack()[0].offset, {"distance": 1}),

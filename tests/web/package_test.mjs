@@ -12,7 +12,7 @@ process.env.SOURCE_DATE_EPOCH = '0';
 const program = process.env.LAMELLA_PROGRAM;
 const packageFolder = process.env.LAMELLA_PACKAGE;
 const lamella = await import(pathToFileURL(join(packageFolder, 'node.js')).href);
-const { LamellaError, Mesh, Stack, diagnose, makeBody, meshOf, readFile, readLayers, readMesh, run, slice, sliceLayers, sliceToFile, view, writeLayers } = lamella;
+const { LamellaError, Mesh, Stack, checkPrint, diagnose, makeBody, meshOf, readFile, readLayers, readMesh, run, slice, sliceLayers, sliceToFile, view, writeLayers } = lamella;
 
 const folder = mkdtempSync(join(tmpdir(), 'lamella-web-'));
 after(() => rmSync(folder, { recursive: true, force: true }));
@@ -500,9 +500,20 @@ test('the samples of the documentation run', async () => {
   }
 });
 
+test('a print is checked as the program checks it, from a mesh and from its layers', async () => {
+  native('make', 'sphere', '--size', '10', '-o', 'ball.stl');
+  const { path, ...expected } = JSON.parse(native('check', 'ball.stl', '--layer-height', '0.2', '--json'));
+  const mesh = await readMesh(readFileSync(join(folder, 'ball.stl')), 'ball.stl');
+  const { path: name, warnings, ...found } = await checkPrint(mesh, { layerHeight: 0.2 });
+  assert.deepEqual(found, expected);
+  assert.equal(path, name);
+  assert.deepEqual(warnings, []);
+  assert.equal((await checkPrint(await slice(mesh, { layerHeight: 0.2 }), { overhangAngle: 80 })).ok, true);
+});
+
 test('only what is documented is exported', () => {
   assert.deepEqual(Object.keys(lamella).sort(), [
-    'LamellaError', 'Layer', 'Mesh', 'Stack', 'diagnose', 'makeBody', 'meshOf', 'readFile', 'readLayers', 'readMesh', 'releaseWorkers', 'run', 'slice',
+    'LamellaError', 'Layer', 'Mesh', 'Stack', 'checkPrint', 'diagnose', 'makeBody', 'meshOf', 'readFile', 'readLayers', 'readMesh', 'releaseWorkers', 'run', 'slice',
     'sliceLayers', 'sliceToFile', 'usePlatform', 'view', 'writeLayers',
   ]);
   assert.ok(Mesh);

@@ -288,6 +288,38 @@ export function writeLayers(stack: Stack, format: FileFormat, options?: WriteOpt
 /** Writes one file for each layer. */
 export function writeLayers(stack: Stack, format: 'png', options?: WriteOptions): Promise<Record<string, Uint8Array>>;
 
+/** Material, or a space, over consecutive layers of a print; lengths in mm. */
+export interface PrintRegion {
+  layer: number;
+  /** The bottom of the first layer and the top of the last one. */
+  z: [number, number];
+  /** The centroid in the first layer. */
+  centre: [number, number];
+  area_mm2: number;
+  largest_mm2: number;
+  volume_mm3: number;
+}
+/** What `lamella check --json` prints. */
+export interface PrintCheck {
+  ok: boolean;
+  layers: number;
+  islands: number;
+  overhangs: number;
+  overhangs_mm2: number;
+  cups: number;
+  traps: number;
+  traps_mm3: number;
+  empty_layers: number;
+  area_jumps: number;
+  list_of_islands: (PrintRegion & { joins: boolean; support: boolean })[];
+  list_of_cavities: (PrintRegion & { trap: boolean; on_plate: boolean; opens: boolean })[];
+  findings: string[];
+  warnings: string[];
+  [fact: string]: unknown;
+}
+/** Finds islands, overhangs and enclosed resin. `touch` is an area in mm2, `overhangAngle` an angle in degrees. */
+export function checkPrint(meshOrStack: Mesh | Stack, options?: SliceOptions & { touch?: number; overhangAngle?: number }): Promise<PrintCheck>;
+
 /** A page that shows the layers, as `lamella view` writes it: HTML. */
 export function view(meshOrStack: Mesh | Stack, options?: SliceOptions): Promise<Uint8Array>;
 

@@ -352,6 +352,15 @@ export async function diagnose(mesh, options = {}) {
   return { ...JSON.parse(text), warnings };
 }
 
+/** Islands, overhangs, cups and traps of a print, as `lamella check --json` describes them. */
+export async function checkPrint(meshOrStack, options = {}) {
+  const { name = 'stack.npz', bytes } = checked(meshOrStack, [Mesh, Stack], 'checkPrint');
+  const files = { [name]: bytes };
+  const words = wordsOf({ ...readings.get(meshOrStack), ...options }, files);
+  const { text, warnings } = await run(['check', name, '--json', '--progress=json', ...words], files, options);
+  return { ...JSON.parse(text), warnings };
+}
+
 // ---- Layers -----------------------------------------------------------------------------------------------------------
 
 /** The entries of a zip archive whose bytes are stored as they are. */

@@ -237,8 +237,8 @@ struct Findings {
     [[nodiscard]] std::uint64_t count(FindingKind kind) const noexcept { return of(kind).count; }
     /// Returns the first finding whose severity is at least `least`; null if there is none.
     [[nodiscard]] const Finding* first(Severity least) const noexcept;
-    /// Returns the numbers of all kinds of a check, `layers` or `vectors`, that have keys, in the order of
-    /// the table. Kinds with the same key are added up; numbers of kinds that were not found are 0.
+    /// Returns the numbers of all kinds of a check, `layers`, `vectors` or `print`, that have keys, in the
+    /// order of the table. Kinds with the same key are added up; numbers of kinds that were not found are 0.
     [[nodiscard]] std::vector<FindingNumber> numbers(FindingOrigin check) const;
     /// Returns a line for each finding, without the names of files.
     [[nodiscard]] std::vector<std::string> texts() const;
