@@ -388,17 +388,31 @@ LayerWriteOptions LayerOutputOptions::write_options(const LayerFormat& chosen) c
     return options;
 }
 
+namespace {
+
+/// Parses two lengths, such as "0.2:0.5". Throws Error{usage}.
+std::pair<double, double> parse_ramp(const std::string& text) {
+    const std::size_t colon = text.find(':');
+    if (colon == std::string::npos)
+        throw Error(ErrorKind::usage, "expected two lengths, such as 0.2:0.5");
+    return {parse_positive(text.substr(0, colon)), parse_positive(text.substr(colon + 1))};
+}
+
+} // namespace
+
 LayerSteps LayerStepOptions::steps() const {
     LayerSteps steps;
     for (const FillRule rule : {FillRule::nonzero, FillRule::evenodd, FillRule::positive})
         if (fill == fill_rule_name(rule))
             steps.fill = rule;
     steps.offset_mm = offset.value_or(0);
+    if (bottom_offset)
+        steps.bottom = {.inset_mm = bottom_offset->first, .height_mm = bottom_offset->second};
     for (const OffsetCorner corner : {OffsetCorner::bevel, OffsetCorner::round})
         if (offset_corners == offset_corner_name(corner))
             steps.offset_corners.shape = corner;
-    if (steps.offset_corners.shape != OffsetCorner::mitre && !offset)
-        throw Error(ErrorKind::usage, "--offset-corners goes with --offset");
+    if (steps.offset_corners.shape != OffsetCorner::mitre && !steps.offsets())
+        throw Error(ErrorKind::usage, "--offset-corners goes with --offset or --bottom-offset");
     steps.largest_only = largest_only;
     steps.min_area_mm2 = min_area.value_or(0);
     steps.simplify_mm = simplify.value_or(0);
@@ -418,7 +432,11 @@ OptionGroup layer_step_options(LayerStepOptions& target) {
                     "unite contours that overlap; the rule decides by the winding number where material is",
                     std::move(rules), target.fill),
              number("offset", "MM", "move contours outwards, or inwards by a negative number", target.offset),
-             choice("offset-corners", "SHAPE", "how --offset joins sides that separate at a corner",
+             row("bottom-offset", ValueKind::text, "MM:HEIGHT",
+                 "move contours inwards by MM at the plate, and by less up to this HEIGHT above it, against "
+                 "the bulge of the first layers (elephant's foot); holes grow",
+                 [&target](const std::string& text) { target.bottom_offset = parse_ramp(text); }),
+             choice("offset-corners", "SHAPE", "how offsets join sides that separate at a corner",
                     std::move(corners), target.offset_corners),
              flag("largest-only", "keep the largest body of each layer, with its holes", target.largest_only),
              row("min-area", ValueKind::number, "MM2", "drop bodies and holes of a smaller area",
@@ -430,6 +448,7 @@ std::string changes_text(const LayerSteps& steps, const LayerChanges& changes) {
     std::string options;
     for (const auto& [taken, option] :
          {std::pair{steps.fill != FillRule::none, "--fill"}, std::pair{steps.offset_mm != 0, "--offset"},
+          std::pair{steps.bottom.inset_mm != 0, "--bottom-offset"},
           std::pair{steps.largest_only, "--largest-only"}, std::pair{steps.min_area_mm2 != 0, "--min-area"},
           std::pair{steps.simplify_mm != 0, "--simplify"}})
         if (taken)

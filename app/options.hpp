@@ -19,6 +19,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace lamella::app {
@@ -128,6 +129,7 @@ struct LayerStepOptions {
     std::string fill = "none";
     std::optional<double> offset;
     std::string offset_corners = "mitre";
+    std::optional<std::pair<double, double>> bottom_offset;
     bool largest_only = false;
     std::optional<double> min_area;
     std::optional<double> simplify;

@@ -70,7 +70,8 @@ void add_mark(std::vector<PageLocation>& marks, const char* kind, const PrintReg
                          .text = region_text(region) + end,
                          .points = {{region.centre.x, region.centre.y, region.bottom_mm},
                                     {region.centre.x, region.centre.y, region.top_mm}},
-                         .found = found});
+                         .found = found,
+                         .of_print = true});
 }
 
 /// Returns the layer with the largest value.

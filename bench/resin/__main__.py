@@ -42,7 +42,9 @@ def main(arguments):
     chosen = parts.named(options.parts, [*parts.TINY_PARTS, *parts.ALL_PARTS]) if options.parts else PARTS
     folder = Path(options.out)
     folder.mkdir(parents=True, exist_ok=True)
-    asked = [slicers.lamella(options.lamella, True), slicers.lamella(options.lamella, False), slicers.prusa_slicer()]
+    asked = [slicers.lamella(options.lamella, "lamella", "Lamella, as SL1S", ".sl1s"),
+             slicers.lamella(options.lamella, "goo", "Lamella, as .goo", ".goo"), slicers.check_of(options.lamella),
+             slicers.lamella(options.lamella, "layers", "Lamella, layers as CLI", ".cli"), slicers.prusa_slicer()]
     present = [(slicer, slicer.version()) for slicer in asked]
     present = [(slicer, version) for slicer, version in present if version is not None]
     here = machine.describe(options.lamella)
@@ -114,7 +116,8 @@ def build_page(cells, done, present, here, options):
     page.say(f"From an STL file to a job of {slicers.COLUMNS} x {slicers.ROWS} pixels with anti-aliasing, which the part fills "
              "but for a tenth; layers of 0.1 mm, no supports, no pad, nothing made smaller or larger on purpose. Whole "
              f"processes in turn, medians of {options.rounds} runs; limit for one run: {options.timeout:g} s. The second row "
-             "is the same part as a slice file without pictures: what pictures cost lies between the two.",
+             "is the same part in runs of pixels, without compression, the third is lamella check, the fourth a slice file "
+             "without pictures.",
              f"{here['processor']}, {here['threads']} threads, {here['memory']}; {here['system']}; {here['date']}; "
              + ", ".join(f"{slicer.title} {version}" for slicer, version in present if slicer.images) + ".",
              f"{images.LOOKED_AT} images of each job are compared, pixel by pixel; a time counts when there are as many "

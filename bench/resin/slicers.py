@@ -7,7 +7,7 @@ from typing import Callable, Optional
 from bench.rivals.program import version
 
 COLUMNS, ROWS = 2560, 1620  # of an Original Prusa SL1S
-OURS = ("lamella", "layers")
+OURS = ("lamella", "goo", "check", "layers")
 
 
 @dataclass(frozen=True)
@@ -37,14 +37,22 @@ def pixel_mm(box):
     return float(f"{1.1 * max((right - left) / COLUMNS, (back - front) / ROWS):.3g}")
 
 
-def lamella(program, images):
+def lamella(program, name, title, suffix):
+    """A job of images, or a slice file without images for the suffix .cli."""
     def command(job, output):
         return [program, "slice", job.mesh, "-o", output, "--layer-height", f"{job.layer_height:g}", "--progress", "none",
                 *(["--display-size", ",".join(job.display), "--resolution", f"{COLUMNS}x{ROWS}",
-                   "--orientation", "landscape", "--mirror", "none"] if images else [])]
+                   "--orientation", "landscape", "--mirror", "none"] if suffix != ".cli" else [])]
 
-    return Slicer("lamella" if images else "layers", "Lamella" if images else "Lamella, layers as CLI",
-                  ".sl1s" if images else ".cli", images, command, lambda: version([program, "--version"], r"(\d[\w.]*)"))
+    return Slicer(name, title, suffix, suffix == ".sl1s", command, lambda: version([program, "--version"], r"(\d[\w.]*)"))
+
+
+def check_of(program):
+    """The check of the print, with the areas of all layers."""
+    def command(job, output):
+        return [program, "check", job.mesh, "--layer-height", f"{job.layer_height:g}", "--stats", output, "--progress", "none"]
+
+    return Slicer("check", "Lamella, the check", ".json", False, command, lambda: version([program, "--version"], r"(\d[\w.]*)"))
 
 
 def prusa_slicer():

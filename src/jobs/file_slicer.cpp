@@ -75,6 +75,7 @@ LayerJob layer_job(const FileJob& job, const Plate& plate, const LayerLimits& li
                     .check = job.check,
                     .statistics = job.layer_statistics,
                     .limits = limits};
+    layers.steps.bottom.plate_mm = plate.box.min.z;
     const auto add_file = [&](std::size_t shape) {
         layers.files.push_back(static_cast<std::uint32_t>(plate.shapes[shape].input));
     };

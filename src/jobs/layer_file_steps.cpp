@@ -77,9 +77,12 @@ bool fits_well(const PlaneSource& source) {
 
 } // namespace
 
-SteppedFile take_steps(const LayerSteps& steps, LayerFile file, const Execution& execution,
+SteppedFile take_steps(const LayerSteps& given, LayerFile file, const Execution& execution,
                        std::uint64_t max_memory) {
-    check_steps(steps);
+    check_steps(given);
+    LayerSteps steps = given;
+    if (!file.planes.empty())
+        steps.bottom.plate_mm = file.planes.front().bottom;
     const std::size_t planes = file.planes.size();
     SteppedFile result{.file = std::move(file), .planes = std::vector<LayerChanges>(planes)};
     if (!steps.any())
@@ -91,7 +94,7 @@ SteppedFile take_steps(const LayerSteps& steps, LayerFile file, const Execution&
                                                       .limits = layer_limits(execution, max_memory, threads),
                                                       .names = names_of(result.file)});
     LayerFindingSearch search(planes, LayerUse::kept, result.file.rounding,
-                              steps.offset_mm != 0 ? InversionSearch::full : InversionSearch::quick,
+                              steps.offsets() ? InversionSearch::full : InversionSearch::quick,
                               execution, max_memory);
     std::vector<PlaneSums> sums(threads, PlaneSums(result.file.parts.size()));
     std::vector<std::uint64_t> contours(threads);

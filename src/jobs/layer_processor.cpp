@@ -138,7 +138,7 @@ std::vector<InvertedRings> LayerProcessor::inverted_of(std::span<const Layer> bo
     const bool as_cut = !job_.steps.any() && job_.negatives.empty();
     if ((job_.scan && as_cut) || job_.steps.fill != FillRule::none)
         return inverted;
-    const bool loses = job_.scan || job_.steps.offset_mm != 0 || !job_.negatives.empty();
+    const bool loses = job_.scan || job_.steps.offsets() || !job_.negatives.empty();
     const InversionSearch search = loses ? InversionSearch::full : InversionSearch::quick;
     for (std::size_t i = 0; i < bodies.size(); ++i)
         inverted.push_back(naming(i < job_.names.size() ? job_.names[i] : std::string(), [&] {

@@ -94,8 +94,11 @@ inline std::vector<PlaneRange> ranges_of_sections(std::span<const Layer> layers,
 
 /// Returns all steps except `simplify`. The last digits of coordinates decide which points `simplify`
 /// removes, so its moves are tolerated instead.
-inline LayerSteps steps_to_repeat(LayerSteps steps) {
+inline LayerSteps steps_to_repeat(const VerifyOptions& options, const Execution& execution) {
+    LayerSteps steps = options.steps;
     steps.simplify_mm = 0;
+    if (steps.bottom.inset_mm != 0)
+        steps.bottom.plate_mm = bounding_box(*options.mesh, execution).min.z;
     return steps;
 }
 

@@ -101,10 +101,10 @@ struct CheckedLayer : LayerCheck {
 
 void compare_areas(std::span<const Layer> layers, std::span<const CheckedLayer> checks, const Point2& origin,
                    const VerifyOptions& options, const Execution& execution, Verification& result) {
-    LayerSteps steps = steps_to_repeat(options.steps);
+    LayerSteps steps = steps_to_repeat(options, execution);
     std::vector<std::vector<AreaMoments>> sections(layers.size());
     const double limit = steps.offset_corners.mitre_limit;
-    const bool has_mitres = steps.offset_mm != 0 && steps.offset_corners.shape == OffsetCorner::mitre;
+    const bool has_mitres = steps.offsets() && steps.offset_corners.shape == OffsetCorner::mitre;
     const std::vector<double> limits =
         has_mitres ? limits_of_mitres(limit, options.granted()) : std::vector{limit};
     const bool cuts = steps.any() || options.subtracts() || options.close_gaps_mm;

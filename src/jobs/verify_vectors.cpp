@@ -224,7 +224,7 @@ VectorVerification verify_vectors(const PlaneSource& file, const VerifyOptions& 
             sections =
                 at_moved_cuts(std::span(planes).subspan(range.begin, range.size()), options.granted(),
                               options.rule, options.snap_mm, [&](const Plan& plan) {
-                                  return layers_of(options, plan, steps_to_repeat(options.steps), execution);
+                                  return layers_of(options, plan, steps_to_repeat(options, execution), execution);
                               });
         executor.for_chunks(range.size(), 1,
                             [&](std::uint64_t i, std::uint64_t, unsigned) { check_plane(range.begin + i); });

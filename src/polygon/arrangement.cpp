@@ -313,6 +313,8 @@ bool is_beside(const Segment& s, const Point2& position) noexcept {
 /// bundles; a number of cuts for each side in the worst case.
 void join_bundles(Arrangement& arrangement, const LayerBudget& budget) {
     std::vector<Side>& sides = arrangement.sides;
+    if (sides.empty())
+        return; // opposite sides have cancelled
     const auto squared_length = [](const Side& side) {
         const GridVector way = from_to(side.line.lo, side.line.hi);
         return Wide{way.x} * way.x + Wide{way.y} * way.y;

@@ -27,6 +27,58 @@ Layer rings_of(const Layer& layer) {
     return rings;
 }
 
+/// Returns the rings that bound the material of a layer. Rings that are closer than the grid of `fill` are
+/// united, too: walls that stand side by side may have gaps of the last digits once they are rotated.
+Layer united_closely(const Layer& layer, const LayerLimits& limits) {
+    const Layer rings = rings_of(layer);
+    if (rings.rings == 0)
+        return rings;
+    // Only rings of two operands can be close. Here each ring belongs to both.
+    return Overlay(rings, std::vector<Windings>(rings.rings, {1, 1}), limits, most_crossings,
+                   Closeness::rounding)
+        .filled(Material(BooleanOperation::unite), Walls::dissolved)
+        .filled.layer;
+}
+
+/// Returns whether a ring has material on its left and none on its right. Rings as small as rounding errors
+/// may have neither.
+bool bounds_material(const Layer& layer, const Nesting& nest, std::size_t ring) {
+    const double area = ring_area(layer.contour(ring));
+    return nest.kind[ring] == RingKind::outer
+               ? area > 0
+               : nest.kind[ring] == RingKind::hole && nest.winding[ring] == 1 && area < 0;
+}
+
+/// A layer in normal form, all of whose rings bound material.
+struct BoundedLayer {
+    BoundedLayer(const Layer& given, const LayerLimits& limits)
+        : layer(normal_form(united_closely(given, limits))), nest(nesting(layer, limits)) {
+        // Without a ring, others may bound nothing.
+        while (leave_out_others())
+            nest = nesting(layer, limits);
+    }
+
+    Layer layer;
+    Nesting nest;
+
+  private:
+    bool leave_out_others() {
+        std::vector<Point2> points;
+        std::vector<std::uint64_t> offsets{0};
+        for (std::size_t ring = 0; ring < layer.rings; ++ring)
+            if (bounds_material(layer, nest, ring)) {
+                points.insert(points.end(), layer.contour(ring).begin(), layer.contour(ring).end());
+                offsets.push_back(points.size());
+            }
+        if (offsets.size() == layer.offsets.size())
+            return false;
+        layer.rings = offsets.size() - 1;
+        layer.offsets = std::move(offsets);
+        layer.points = PointArray(std::move(points));
+        return true;
+    }
+};
+
 AreaMoments moments_of_ring(std::span<const Point2> ring, const Point2& origin) {
     AreaMoments moments;
     for (std::size_t k = 0; k < ring.size(); ++k)
@@ -77,20 +129,21 @@ struct OverlaidCells {
 } // namespace
 
 LayerCells cells_of(const Layer& layer, const LayerLimits& limits) {
-    LayerCells result{.layer = normal_form(united(rings_of(layer), limits))};
+    BoundedLayer bounded(layer, limits);
+    LayerCells result{.layer = std::move(bounded.layer)};
     const Layer& rings = result.layer;
-    const Nesting nest = nesting(rings, limits);
+    const Nesting& nest = bounded.nest;
     result.cells.resize(rings.rings + 1);
     result.around.resize(rings.rings);
     for (std::size_t ring = 0; ring < rings.rings; ++ring) {
-        result.cells[ring + 1].material = nest.winding_inside[ring] > nest.winding[ring];
+        result.cells[ring + 1].material = nest.kind[ring] == RingKind::outer;
         result.around[ring] = nest.parent[ring] == Nesting::none ? 0 : nest.parent[ring] + 1;
     }
     std::vector<AreaMoments> moments(result.cells.size());
     const Point2 origin = rings.points.empty() ? Point2{} : rings.points[0];
     for (std::size_t ring = 0; ring < rings.rings; ++ring) {
         AreaMoments own = moments_of_ring(rings.contour(ring), origin);
-        const double sign = own.area_mm2 < 0 ? -1 : 1;
+        const double sign = result.cells[ring + 1].material ? 1 : -1;
         own = {std::abs(ring_area(rings.contour(ring))), sign * own.x_mm3, sign * own.y_mm3};
         moments[ring + 1].add(own);
         if (result.around[ring] != 0)
@@ -134,11 +187,12 @@ std::vector<CellOverlap> overlaps(const LayerCells& first, const LayerCells& sec
         return found;
     }
     const OverlaidCells both(first, second);
-    for (const CellArea& area : Overlay(both.layer, both.turns, limits).areas()) {
-        const auto cell_of_first = static_cast<std::uint32_t>(area.windings.first);
-        const auto cell_of_second = static_cast<std::uint32_t>(area.windings.second);
-        found.push_back({cell_of_first, cell_of_second, area.mm2});
-    }
+    const auto is_cell = [](std::int64_t number, const LayerCells& cells) {
+        return number >= 0 && static_cast<std::uint64_t>(number) < cells.cells.size();
+    };
+    for (const CellArea& area : Overlay(both.layer, both.turns, limits).areas())
+        if (const auto& [a, b] = area.windings; is_cell(a, first) && is_cell(b, second))
+            found.push_back({static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b), area.mm2});
     return found;
 }
 

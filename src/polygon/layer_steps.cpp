@@ -1,11 +1,15 @@
 #include "lamella/polygon/layer_steps.hpp"
 
 #include "lamella/contour/measure.hpp"
+#include "lamella/core/error.hpp"
 
 #include "core/executor.hpp"
 #include "core/naming.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <utility>
@@ -41,6 +45,12 @@ void check_steps(const LayerSteps& steps) {
     const Layer none; // steps check their parameters before they examine a layer
     if (steps.offset_mm != 0)
         static_cast<void>(offset(none, steps.offset_mm, {.corners = steps.offset_corners}));
+    const BottomInset& bottom = steps.bottom;
+    if (bottom != BottomInset{} && !(bottom.inset_mm > 0 && std::isfinite(bottom.inset_mm) &&
+                                     bottom.height_mm > 0 && std::isfinite(bottom.height_mm)))
+        throw Error(ErrorKind::usage,
+                    fmt::format("the first layers cannot shrink by {} mm over {} mm; both must be above 0",
+                                bottom.inset_mm, bottom.height_mm));
     if (steps.min_area_mm2 != 0)
         static_cast<void>(without_small_rings(none, steps.min_area_mm2));
     if (steps.simplify_mm != 0)
@@ -64,9 +74,9 @@ ChangedLayer take_steps(const LayerSteps& steps, Layer layer, const LayerLimits&
         if (changed)
             layer = std::move(filled.layer);
     }
-    if (steps.offset_mm != 0 && layer.rings > 0) {
+    if (const double distance = steps.offset_at(layer.z); distance != 0 && layer.rings > 0) {
         CountedOffset moved =
-            counted_offset(layer, steps.offset_mm, {.corners = steps.offset_corners, .limits = limits});
+            counted_offset(layer, distance, {.corners = steps.offset_corners, .limits = limits});
         changes.rings_vanished = moved.rings_vanished;
         changed = true;
         layer = std::move(moved.layer);

@@ -1,5 +1,6 @@
 """What is made of layers between slicing and writing, from the command line: --fill, --offset, --largest-only and so on."""
 
+import json
 import math
 
 from program import ProgramTest, binary_stl, box_triangles, main
@@ -57,13 +58,28 @@ class LayerSteps(ProgramTest):
         self.assert_areas(self.stats("--offset", "1"), 2 * 22 * 32 - 12 * 12 + 4 * 3)
         self.assert_areas(self.stats("--offset", "-1"), 2 * 18 * 28 - 8 * 8)
 
+    def test_the_first_layers_shrink(self):
+        self.succeed("make", "box", "--size", "10,20,2", "--translate", "0,0,3", "-o", "block.stl")
+        cut = ["slice", "block.stl", "--layer-height", "0.5"]
+        self.succeed(*cut, "--bottom-offset", "0.4:1", "--stats", "stats.json", "-o", "block.json")
+        areas = [layer["area_mm2"] for layer in json.loads(self.path("stats.json").read_text())["layers"]]
+        for area, inset in zip(areas, [0.3, 0.1, 0, 0]):  # cut at 0.25 and 0.75 mm above the plate
+            self.assertAlmostEqual(area, (10 - 2 * inset) * (20 - 2 * inset), delta=1e-6)
+        self.succeed("verify", "block.json", "--mesh", "block.stl", "--bottom-offset", "0.4:1")
+        self.assertEqual(self.run_program("verify", "block.json", "--mesh", "block.stl").code, 4)
+        self.succeed(*cut, "-o", "plain.json")
+        self.succeed("convert", "plain.json", "shrunk.json", "--bottom-offset", "0.4:1")
+        self.succeed("compare", "shrunk.json", "block.json")
+        for wrong in ["0.4", "0:1", "0.4:0", "-1:1", "a:b"]:
+            self.fail_with(2, "--bottom-offset", *cut, "-o", "x.json", f"--bottom-offset={wrong}")
+
     def test_corners_of_offsets(self):
         mitred = 2 * 22 * 32 - 12 * 12 + 4 * 3
         self.assert_areas(self.stats("--offset", "1", "--offset-corners", "mitre"), mitred)
         self.assert_areas(self.stats("--offset", "1", "--offset-corners", "bevel"), mitred - 10 * 0.5)
         for layer in self.stats("--offset", "1", "--offset-corners", "round")["layers"]:
             self.assertAlmostEqual(layer["area_mm2"], mitred - 10 * (1 - math.pi / 4), delta=0.02)
-        self.fail_with(2, "--offset-corners goes with --offset", "slice", "heap.stl", "--offset-corners", "round", "-o", "x.cli")
+        self.fail_with(2, "--offset-corners goes with --offset or --bottom-offset", "slice", "heap.stl", "--offset-corners", "round", "-o", "x.cli")
 
     def test_the_largest_body_and_the_smallest_area(self):
         self.assert_areas(self.stats("--fill", "nonzero", "--largest-only"), 1100)

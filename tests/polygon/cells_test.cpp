@@ -9,7 +9,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstddef>
 #include <cstdint>
+#include <numbers>
 #include <utility>
 #include <vector>
 
@@ -58,6 +61,47 @@ TEST(LayerCells, UnitesOverlapsAndDissolvesWalls) {
     const LayerCells adjacent = cells_of(normal_layer({rectangle(0, 0, 4, 4), rectangle(4, 0, 6, 4)}));
     ASSERT_EQ(adjacent.cells.size(), 2U);
     EXPECT_NEAR(adjacent.cells[1].area_mm2, 24, 1e-9);
+}
+
+TEST(LayerCells, UnitesWallsWithGapsOfRoundingErrors) {
+    for (int degrees = 0; degrees < 360; degrees += 7) {
+        const double angle = degrees * std::numbers::pi / 180;
+        std::vector<Contour> walls{rectangle(0, 0, 9, 1), rectangle(0, 1, 1, 8), rectangle(8, 1, 9, 8),
+                                   rectangle(0, 8, 9, 9)};
+        for (Contour& wall : walls)
+            for (Point2& p : wall)
+                p = {p.x * std::cos(angle) - p.y * std::sin(angle),
+                     p.x * std::sin(angle) + p.y * std::cos(angle)};
+        const LayerCells cells = cells_of(normal_layer(walls));
+        ASSERT_EQ(cells.cells.size(), 3U) << degrees;
+        EXPECT_NEAR(cells.cells[1].area_mm2, 81 - 49, 1e-6);
+        EXPECT_NEAR(cells.cells[2].area_mm2, 49, 1e-6);
+    }
+}
+
+TEST(LayerCells, HaveNoMaterialWhereRingsCancel) {
+    const Contour square = rectangle(0, 0, 4, 4);
+    EXPECT_EQ(cells_of(normal_layer({square, reversed(square)})).cells.size(), 1U);
+}
+
+// After uniting, a ring of these is so small that it runs one way at its left end and the other way in all.
+TEST(LayerCells, LeavesOutRingsAsSmallAsRoundingErrors) {
+    const LayerCells cells = cells_of(normal_layer({{{1.6, -0.3}, {0.85, 1.5}, {0.3, 0.8}, {0.2, 0.6}},
+                                                    {{0.69503, 1.299919},
+                                                     {0.7009008845174772, 1.3000399352388485},
+                                                     {0.7031850218772888, 1.3000869750976562},
+                                                     {0.7, 1.32}},
+                                                    {{0.704, 1.3003},
+                                                     {0.7031850218772888, 1.3000869750976562},
+                                                     {0.6959454270023167, 1.2999378818221223},
+                                                     {0.7, 1.3}},
+                                                    {{0.71, 0.4434}, {0.6956, 0.498}, {0.7, 0.5}}}));
+    for (std::size_t ring = 0; ring < cells.layer.rings; ++ring)
+        EXPECT_EQ(ring_area(cells.layer.contour(ring)) > 0, cells.cells[ring + 1].material);
+    LayerCells space;
+    space.cells.resize(1);
+    for (const CellOverlap& overlap : overlaps(space, cells))
+        EXPECT_LT(overlap.second, cells.cells.size());
 }
 
 TEST(LayerCells, KeepsBodiesApartThatTouchInAPoint) {

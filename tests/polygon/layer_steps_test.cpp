@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <utility>
 
 namespace lamella {
 namespace {
@@ -35,6 +36,23 @@ TEST(LayerSteps, ThatAreImpossibleAreRefusedWhateverTheLayer) {
                        [&] { static_cast<void>(take_steps(steps, std::vector<LayerStack>{})); });
     }
     check_steps({.offset_mm = -1, .min_area_mm2 = 1, .simplify_mm = 0.1});
+}
+
+TEST(LayerSteps, ShrinkTheFirstLayersLessAndLess) {
+    LayerSteps steps{.offset_mm = 0.1, .bottom = {.inset_mm = 0.4, .height_mm = 2, .plate_mm = -1}};
+    const Layer tube = normal_form(layer_of({rectangle(0, 0, 8, 8), reversed(rectangle(2, 2, 6, 6))}));
+    for (const auto& [z, distance] :
+         {std::pair{-2.0, -0.3}, {-1.0, -0.3}, {0.0, -0.1}, {0.5, 0.0}, {1.0, 0.1}, {9.0, 0.1}}) {
+        EXPECT_NEAR(steps.offset_at(z), distance, 1e-15);
+        Layer layer = tube;
+        layer.z = z;
+        const Layer expected = offset(layer, steps.offset_at(z));
+        EXPECT_TRUE(same_contours(take_steps(steps, layer).layer, expected)) << z;
+    }
+    for (const BottomInset& impossible :
+         {BottomInset{.inset_mm = 1}, BottomInset{.inset_mm = -1, .height_mm = 1},
+          BottomInset{.inset_mm = 0, .height_mm = 1}})
+        test::error_of(ErrorKind::usage, [&] { check_steps({.bottom = impossible}); });
 }
 
 TEST(LayerSteps, AreTakenInOrderAndReportedAbout) {

@@ -140,7 +140,8 @@ export function verdict(page) {
   const bad = table.z.filter((_, i) => faultsOf(table, i) > 0).length;
   if (bad > 0) return { tone: 'bad', text: `${counted(bad, 'layer')} with faults` };
   if (!hasMaterial(head)) return { tone: 'plain', text: vectorText(sum(table.vectors), sum(table.build_seconds)) };
-  if (page.notes.places.length > 0) return { tone: 'warning', text: 'Contours are sound, the mesh has defects' };
+  if (page.notes.places.some(({ of_print }) => !of_print)) return { tone: 'warning', text: 'Contours are sound, the mesh has defects' };
+  if (page.notes.places.length > 0) return { tone: 'warning', text: `Contours are sound, ${counted(page.notes.places.length, 'place')} found by the check` };
   return { tone: 'good', text: 'All contours are sound' };
 }
 

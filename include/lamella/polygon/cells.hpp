@@ -12,7 +12,8 @@
 LAMELLA_API_BEGIN
 namespace lamella {
 
-/// A connected area of material, or of space, in a layer. Areas that meet only in points are not connected.
+/// A connected area of material, or of space, in a layer. Bodies that meet only in points are not connected.
+/// A space is connected if a single ring bounds it, even where it is pinched to a point.
 struct LayerCell {
     bool material = false;
     double area_mm2 = 0; ///< 0 for the space outside, which is infinite
@@ -22,7 +23,8 @@ struct LayerCell {
 /// A layer divided into cells.
 struct LayerCells {
     /// The rings that bound the material, in normal form and with material on their left only: overlapping
-    /// bodies are united, and walls without thickness between bodies are dissolved. Open chains are left out.
+    /// bodies are united, and so are those with gaps or walls between them that are thinner than the grid of
+    /// `fill`. Open chains are left out.
     Layer layer = {};
     /// Cell 0 is the space outside. Cell k + 1 is next to ring k on its inside.
     std::vector<LayerCell> cells = {};
@@ -45,8 +47,8 @@ struct CellOverlap {
 };
 
 /// Returns all pairs of cells whose common area is not 0, ascending. Cells that only touch do not overlap.
-/// Whether cells overlap is decided exactly, except for overlaps thinner than the grid to which `fill` rounds
-/// crossings (2^-36 of the extent): they count as touching. Errors and cost are those of `combine`.
+/// This is decided exactly, except for overlaps thinner than the grid to which `fill` rounds crossings (2^-36
+/// of the extent): they count as touching. Errors and cost are those of `combine`.
 [[nodiscard]] std::vector<CellOverlap> overlaps(const LayerCells& first, const LayerCells& second,
                                                 const LayerLimits& limits = {});
 

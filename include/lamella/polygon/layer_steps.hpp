@@ -10,6 +10,7 @@
 #include "lamella/polygon/selection.hpp"
 #include "lamella/polygon/simplify.hpp"
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -18,18 +19,36 @@
 LAMELLA_API_BEGIN
 namespace lamella {
 
+/// Shrinks the first layers, because they bulge when they are exposed for long ("elephant's foot"). A layer
+/// cut at the plate shrinks by `inset_mm`, one cut at `height_mm` above it by nothing, those between in
+/// proportion. Holes grow.
+struct BottomInset {
+    double inset_mm = 0; ///< 0: none
+    double height_mm = 0;
+    double plate_mm = 0; ///< z of the plate; jobs set it to the bottom of the lowest part, or layer of a file
+
+    friend bool operator==(const BottomInset&, const BottomInset&) = default;
+};
+
 /// The steps in the order in which they are applied. By default there are none.
 struct LayerSteps {
     FillRule fill = FillRule::none; ///< see `fill`
     double offset_mm = 0;           ///< see `offset`; 0: none
+    BottomInset bottom = {};        ///< subtracted from the offset
     OffsetCorners offset_corners = {};
     bool largest_only = false; ///< see `largest_body`
     double min_area_mm2 = 0;   ///< see `without_small_rings`; 0: none
     double simplify_mm = 0;    ///< see `simplify`; 0: none
 
     [[nodiscard]] bool any() const noexcept {
-        return fill != FillRule::none || offset_mm != 0 || largest_only || min_area_mm2 != 0 ||
-               simplify_mm != 0;
+        return fill != FillRule::none || offsets() || largest_only || min_area_mm2 != 0 || simplify_mm != 0;
+    }
+    [[nodiscard]] bool offsets() const noexcept { return offset_mm != 0 || bottom.inset_mm != 0; }
+    /// Returns the offset of a layer that is cut at this height, mm.
+    [[nodiscard]] double offset_at(double z) const noexcept {
+        if (bottom.inset_mm == 0 || z >= bottom.plate_mm + bottom.height_mm)
+            return offset_mm;
+        return offset_mm - bottom.inset_mm * (1 - std::max(0.0, z - bottom.plate_mm) / bottom.height_mm);
     }
     friend bool operator==(const LayerSteps&, const LayerSteps&) = default;
 };

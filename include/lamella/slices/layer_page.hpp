@@ -41,6 +41,7 @@ struct PageLocation {
     std::vector<Point3> points; ///< one point, or a line through several; at least one
     bool closed = false;        ///< true if the line leads back to its first point
     std::uint64_t found = 0;    ///< number of all locations of this kind, including unlisted ones; 0: unknown
+    bool of_print = false;      ///< found by the check of the print; otherwise a defect of the mesh
 };
 
 /// Changes that layer steps made to a plane before it was added to the page.

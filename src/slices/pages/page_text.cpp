@@ -35,9 +35,9 @@ std::string section_json(const PageSection& section) {
 }
 
 std::string location_json(const PageLocation& position) {
-    return fmt::format(R"({{"kind":{},"text":{},"closed":{},"found":{},"points":{}}})",
+    return fmt::format(R"({{"kind":{},"text":{},"closed":{},"found":{},"of_print":{},"points":{}}})",
                        page_quoted(position.kind), page_quoted(position.text), position.closed,
-                       position.found, json_list(position.points, point_json));
+                       position.found, position.of_print, json_list(position.points, point_json));
 }
 
 } // namespace

@@ -111,11 +111,21 @@ function noteCards(page) {
 }
 
 /**
- * The places that the program found in the mesh, kind by kind.
+ * Cards of the places that the program found in the mesh, and by the check of the print, kind by kind.
  * @param {(place: object) => void} show
  */
-function placesCard(page, show) {
-  const kinds = byKind(page.notes.places);
+function placesCards(page, show) {
+  const of = (print) => page.notes.places.filter(({ of_print }) => Boolean(of_print) === print);
+  return [
+    ['Defects of the mesh', of(false)],
+    ['Found by the check', of(true)],
+  ]
+    .filter(([, places]) => places.length > 0)
+    .map(([title, places]) => placesCard(title, places, show));
+}
+
+function placesCard(title, all, show) {
+  const kinds = byKind(all);
   const most = 50; // in the list; all of them are drawn
   const lists = [...kinds].map(([kind, places]) => {
     const rest = places.length - most;
@@ -129,7 +139,7 @@ function placesCard(page, show) {
     if (rest > 0) items.push(element('li', { className: 'rest' }, `and ${count(rest)} more`));
     return element('details', { open: places.length <= 8 }, element('summary', {}, kindText(kind, places)), element('ol', { className: 'picks' }, ...items));
   });
-  return card('Defects of the mesh', ...lists);
+  return card(title, ...lists);
 }
 
 /** "self-intersection (12)"; "self-intersection, the first 500 of 1,014" */
@@ -185,7 +195,7 @@ function surfaceCard({ head }) {
 export function meshPanels(page, store, show) {
   const [mesh, ...others] = noteCards(page);
   const cards = [mesh];
-  if (page.notes.places.length > 0) cards.push(placesCard(page, show.place));
+  cards.push(...placesCards(page, show.place));
   cards.push(shellsCard(page, store, show.shell), ...others, surfaceCard(page));
   return element('aside', { className: 'panels', 'aria-label': 'Figures and findings' }, ...cards);
 }
@@ -198,7 +208,7 @@ export function layerPanels(page, store, go, show) {
   if (worst.length > 0) cards.push(layerList('Worst layers', worst, page, go));
   const gaps = widestGaps(page.table);
   if (gaps.length > 0) cards.push(layerList('Longest gaps', gaps, page, go));
-  if (page.notes.places.length > 0) cards.push(placesCard(page, show));
+  cards.push(...placesCards(page, show));
   const bodies = bodiesOf(page.head);
   if (bodies.length > 1) cards.push(partsCard(page.head, bodies, store));
   cards.push(card('Stack', facts(totals(page))));
