@@ -106,6 +106,8 @@ std::uint64_t memory_of(const Plane& plane) {
     for (std::size_t part = 0; part < plane.parts(); ++part)
         bytes += of_empty + plane.polylines[part].offsets.size() * sizeof(std::uint64_t) +
                  (plane.polylines[part].points.size() + plane.hatches[part].size()) * sizeof(Point2);
+    if (plane.image)
+        bytes += sizeof(RunImage) + plane.image->runs.size() * sizeof(ImageRun);
     return bytes;
 }
 
@@ -210,6 +212,7 @@ void keep_planes(PlaneSource& source, std::vector<Plane> planes) {
 
 PlaneSource with_parts(const PlaneSource& source, std::vector<std::size_t> parts) {
     PlaneSource some = source;
+    some.grid.reset();
     some.parts.clear();
     for (const std::size_t part : parts)
         some.parts.push_back(source.parts[part]);

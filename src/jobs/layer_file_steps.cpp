@@ -54,6 +54,7 @@ struct PlaneSteps {
     [[nodiscard]] Stepped take(Plane vectors) const {
         ChangedPlane changed = take_steps_on_plane(steps, vectors.polylines, limits, names);
         Stepped plane{.vectors = std::move(vectors), .changes = changed.changes};
+        plane.vectors.image.reset();
         for (std::size_t i = 0; i < changed.parts.size(); ++i) {
             PointArray& hatches = plane.vectors.hatches[i];
             Layer& layer = plane.vectors.polylines[i];
@@ -128,6 +129,7 @@ SteppedFile take_steps(const LayerSteps& given, LayerFile file, const Execution&
     add_nothing_left(result.findings, all, planes, result.contours);
     sums.front().put(result.file);
     result.file.contents = std::move(contents);
+    result.file.grid.reset(); // the pixels do not show the changes
     if (!kept.empty())
         keep_planes(result.file, std::move(kept));
     else

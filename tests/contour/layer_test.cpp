@@ -138,6 +138,20 @@ TEST(Layer, ThatWasMovedFromHasNoContoursAndNoPoints) {
     EXPECT_TRUE(taken.points.empty()); // NOLINT(bugprone-use-after-move)
 }
 
+TEST(Plane, KeepsAnImageOnlyWhileItShowsAllParts) {
+    const auto image = std::make_shared<const RunImage>(RunImage{2, 1, {{2, 255}}});
+    Plane plane{Layer()};
+    EXPECT_EQ(plane.image, nullptr);
+    plane.image = image;
+    const Plane copy = plane;
+    EXPECT_EQ(copy.image, image);
+    Plane more = plane;
+    more.add(Layer());
+    EXPECT_EQ(more.image, nullptr);
+    plane.append(copy);
+    EXPECT_EQ(plane.image, nullptr);
+}
+
 TEST(MergedLayers, OfNoneAreAnEmptyLayer) {
     const Layer none = merged({});
     EXPECT_EQ(none.contours(), 0U);

@@ -3,6 +3,7 @@
 // Layers: the results of slicing. All points of a layer are in one shared array, divided into contours by
 // offsets.
 
+#include "lamella/contour/run_image.hpp"
 #include "lamella/core/point.hpp"
 
 #include <algorithm>
@@ -105,6 +106,9 @@ using LayerStack = std::vector<Layer>;
 struct Plane {
     std::vector<Layer> polylines;    ///< of each part, with the heights of the plane
     std::vector<PointArray> hatches; ///< of each part: two points for each line, first point to second point
+    /// The pixels of all parts together, if the plane comes from an image, as PlaneSource::grid maps them;
+    /// the contours are then the outlines of its bright pixels. A plane with other contours has no image.
+    std::shared_ptr<const RunImage> image = {};
 
     Plane() = default;
     /// A plane of one part without hatch lines. It shares the points of the layer.
@@ -118,9 +122,9 @@ struct Plane {
 
     /// Returns the number of parts.
     [[nodiscard]] std::size_t parts() const noexcept { return polylines.size(); }
-    /// Appends a part.
+    /// Appends a part. An image of the others is dropped.
     void add(Layer lines, PointArray hatch_lines = {});
-    /// Appends all parts of another plane at the same height.
+    /// Appends all parts of another plane at the same height. Images are dropped.
     void append(Plane other);
 };
 

@@ -7,6 +7,7 @@
 #include "lamella/contour/layer.hpp"
 #include "lamella/contour/plane_rule.hpp"
 #include "lamella/contour/rounding.hpp"
+#include "lamella/contour/run_image.hpp"
 #include "lamella/core/commit.hpp"
 #include "lamella/core/execution.hpp"
 #include "lamella/core/point.hpp"
@@ -82,6 +83,8 @@ struct PlaneSource {
     PlaneRule rule = PlaneRule::section_above;
     double largest_coordinate = 0;       ///< largest absolute value of the coordinates of contours
     double largest_hatch_coordinate = 0; ///< largest absolute value of the coordinates of hatch lines
+    /// The pixels of Plane::image, which each plane then has.
+    std::optional<PixelGrid> grid = {};
 
     std::uint64_t bytes = 0;       ///< memory that the source takes
     std::uint64_t plane_bytes = 0; ///< memory for making the largest plane; 0 if all planes are in memory
@@ -135,7 +138,7 @@ struct PlaneSource {
                                     const Execution& execution = {.threads = 1});
 
 /// Returns the source with only the parts at these positions, ascending. Contents and largest coordinates
-/// remain those of all parts.
+/// remain those of all parts. Images are dropped.
 [[nodiscard]] PlaneSource with_parts(const PlaneSource& source, std::vector<std::size_t> parts);
 
 } // namespace lamella

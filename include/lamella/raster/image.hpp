@@ -3,6 +3,7 @@
 // Layers as pixels, for projectors and displays such as those of resin printers.
 
 #include "lamella/contour/layer.hpp"
+#include "lamella/contour/run_image.hpp"
 
 #include <cstdint>
 #include <functional>
@@ -11,17 +12,6 @@
 
 LAMELLA_API_BEGIN
 namespace lamella {
-
-/// The size of an image and the map from layer coordinates to image coordinates. Pixel (c, r), in column c
-/// from the left and row r from the top, is the square [c, c + 1] x [r, r + 1] of image coordinates (u, v).
-/// The point (x, y) of a layer lies at
-///     u = ux x + uy y + u0,    v = vx x + vy y + v0.
-struct PixelGrid {
-    std::uint32_t width = 0;
-    std::uint32_t height = 0;
-    double ux = 1, uy = 0, u0 = 0;
-    double vx = 0, vy = 1, v0 = 0;
-};
 
 /// Largest width and height of an image in pixels, and largest number of anti-aliasing levels.
 inline constexpr std::uint32_t most_pixels = 65535;
