@@ -1,10 +1,16 @@
+#include "lamella/slices/layer_file.hpp"
+
 #include "slices/images/run_codes.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdint>
+#include <optional>
+#include <random>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace lamella::run_codes_cases {
@@ -81,6 +87,132 @@ TEST(CtbCipher, XorsWithTheWordsOfItsDescription) {
     EXPECT_EQ(hex_of(image), "23 50 0B A0 D8 B8 DF");
     apply_ctb_cipher(719487497, 0, image.data(), image.size());
     EXPECT_EQ(hex_of(image), "80 D9 CC 7E 0A E8 84");
+}
+
+/// Limits of a file that does not exist.
+ReadLimits any_limits() {
+    return {ByteSource{}, LayerReadOptions{.max_memory = 1 << 30}};
+}
+
+/// The value of each pixel; "" at the end if all is well, or the fault.
+std::pair<std::vector<int>, std::string> decoded(DecodeRuns& decode, std::string_view code,
+                                                 std::uint32_t width = 8, std::uint32_t height = 2) {
+    ReadLimits limits = any_limits();
+    RunBuilder image(width, height, limits);
+    const std::optional<RunFault> fault = decode(code, image);
+    image.add(7, image.left());
+    std::vector<int> values;
+    std::uint64_t from = 0;
+    for (const ImageRun& run : image.take().runs) {
+        values.insert(values.end(), run.end - from, run.value);
+        from = run.end;
+    }
+    return {values, fault ? fmt::format("{}: {}; {}", fault->at, fault->found, fault->expected) : ""};
+}
+
+std::string bytes_of(const std::vector<unsigned>& numbers) {
+    std::string bytes;
+    for (const unsigned number : numbers)
+        bytes += static_cast<char>(number);
+    return bytes;
+}
+
+/// A code of .goo with the right checksum.
+std::string goo_of(const std::vector<unsigned>& chunks) {
+    unsigned sum = 0;
+    for (const unsigned chunk : chunks)
+        sum += chunk;
+    return "\x55" + bytes_of(chunks) + static_cast<char>(~sum & 0xffU);
+}
+
+TEST(RunCodes, AreDecodedAsTheDescriptionsSay) {
+    const std::vector<int> exact{0, 0, 0, 64, 128, 255, 255, 255, 255, 255, 255, 255, 90, 90, 0, 0};
+    using Values = std::vector<int>;
+    EXPECT_EQ(
+        decoded(decode_goo_runs, bytes_of({0x55, 3, 0x41, 0x40, 0x41, 0x80, 0xC7, 0x42, 0x5A, 2, 0x55})),
+        std::pair(exact, std::string()));
+    EXPECT_EQ(decoded(decode_ctb_runs, bytes_of({0x80, 3, 0x20, 0x40, 0xFF, 7, 0xAD, 2, 0x80, 2})).first,
+              (Values{0, 0, 0, 65, 129, 255, 255, 255, 255, 255, 255, 255, 91, 91, 0, 0}));
+    EXPECT_EQ(decoded(decode_pw0_runs, bytes_of({0, 3, 0x41, 0x81, 0xF0, 7, 0x52, 0, 2})).first,
+              (Values{0, 0, 0, 68, 136, 255, 255, 255, 255, 255, 255, 255, 85, 85, 0, 0}));
+    EXPECT_EQ(decoded(decode_bit_runs, bytes_of({4, 0x88, 4})).first,
+              (Values{0, 0, 0, 0, 255, 255, 255, 255, 255, 255, 255, 255, 0, 0, 0, 0}));
+}
+
+TEST(RunCodes, OfGooMayHaveDifferences) {
+    // 3 black; 5 more; 5 less for 4 pixels; 10 more than 0 for 2; then white and one less.
+    EXPECT_EQ(
+        decoded(decode_goo_runs, goo_of({3, 0x85, 0xB5, 4, 0x9A, 2, 0xC3, 0xA1, 0x02})),
+        std::pair(std::vector<int>{0, 0, 0, 5, 0, 0, 0, 0, 10, 10, 255, 255, 255, 254, 0, 0}, std::string()));
+    EXPECT_EQ(decoded(decode_goo_runs, goo_of({0xA1})).second,
+              "1: a difference that leads to -1; values are 0 to 255");
+}
+
+TEST(RunCodes, SayWhereTheyAreBroken) {
+    const std::string many = "a run of 17 pixels; the image has only 16 more";
+    EXPECT_EQ(decoded(decode_goo_runs, "").second, "0: no byte 0x55; an image begins with it");
+    EXPECT_EQ(decoded(decode_goo_runs, bytes_of({0x55, 3, 0})).second,
+              "2: the checksum 0x00; that of the image is 0xfc");
+    EXPECT_EQ(decoded(decode_goo_runs, goo_of({0x11, 1})).second, "1: " + many);
+    EXPECT_EQ(decoded(decode_goo_runs, goo_of({3, 0x11})).second,
+              "2: the end of the image within a run; the image is truncated");
+    EXPECT_EQ(decoded(decode_goo_runs, goo_of({0})).second, "1: a run of no pixels; a run has at least one");
+    EXPECT_EQ(decoded(decode_ctb_runs, bytes_of({0x80, 17})).second, "0: " + many);
+    EXPECT_EQ(decoded(decode_ctb_runs, bytes_of({0x80, 0xF0, 0, 0, 0})).second,
+              "0: a length that begins with 0xf0; lengths begin with less than 0xf0");
+    EXPECT_EQ(decoded(decode_ctb_runs, bytes_of({5, 0x80, 0x81})).second,
+              "1: the end of the image within a run; the image is truncated");
+    EXPECT_EQ(decoded(decode_pw0_runs, bytes_of({0x00, 17})).second, "0: " + many);
+    EXPECT_EQ(decoded(decode_pw0_runs, bytes_of({0xF0})).second,
+              "0: the end of the image within a run; the image is truncated");
+    EXPECT_EQ(decoded(decode_bit_runs, bytes_of({17})).second, "0: " + many);
+}
+
+TEST(RunCodes, GiveBackWhatTheyEncode) {
+    std::mt19937_64 random(4);
+    constexpr std::uint32_t width = 97;
+    constexpr std::uint32_t height = 53;
+    for (int round = 0; round < 60; ++round) {
+        std::vector<int> values;
+        ByteBuffer goo;
+        ByteBuffer ctb;
+        ByteBuffer pw0;
+        ByteBuffer bits;
+        const RunCode black_and_white = bit_runs(128);
+        RunEncoder encoders[] = {
+            {goo_runs(), goo}, {ctb_runs(), ctb}, {pw0_runs(), pw0}, {black_and_white, bits}};
+        for (std::uint32_t row = 0; row < height; ++row) {
+            std::vector<PixelRun> runs;
+            for (std::uint32_t at = 0; at < width;) {
+                at = std::min<std::uint32_t>(
+                    width, at + 1 + static_cast<std::uint32_t>(random() % (round % 2 == 0 ? 3 : 200)));
+                const auto value =
+                    static_cast<std::uint8_t>(random() % 3 == 0 ? random() : 255 * (random() % 2));
+                values.resize(row * width + at, value);
+                if (!runs.empty() && runs.back().value == value)
+                    runs.back().end = at;
+                else
+                    runs.push_back({at, value});
+            }
+            for (RunEncoder& encoder : encoders)
+                encoder.add(runs, 1);
+        }
+        for (RunEncoder& encoder : encoders)
+            encoder.finish();
+        const auto shown = [&](auto of) {
+            std::vector<int> all;
+            for (const int value : values)
+                all.push_back(of(value));
+            return std::pair(all, std::string());
+        };
+        EXPECT_EQ(decoded(decode_goo_runs, goo.view(), width, height), shown([](int v) { return v; }));
+        EXPECT_EQ(decoded(decode_ctb_runs, ctb.view(), width, height),
+                  shown([](int v) { return v < 2 ? 0 : v | 1; }));
+        EXPECT_EQ(decoded(decode_pw0_runs, pw0.view(), width, height),
+                  shown([](int v) { return v / 16 * 17; }));
+        EXPECT_EQ(decoded(decode_bit_runs, bits.view(), width, height),
+                  shown([](int v) { return v >= 128 ? 255 : 0; }));
+    }
 }
 
 } // namespace
