@@ -69,6 +69,7 @@ int run_convert(const ConvertArguments& arguments, const Context& context) {
                         fmt::format("--label names one part, and {} holds {}", file.path, file.parts.size()));
         info.parts.front().label = arguments.label;
     }
+    arguments.writing.image.apply_to(file, format, info, options);
     const std::unique_ptr<LayerWriter> writer = open_layer_writer(arguments.output, format, info, options);
     write_planes(*writer, file, !steps.any(), arguments.strict, context.messages, execution, max_memory);
     writer->finish();

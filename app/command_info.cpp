@@ -15,6 +15,7 @@
 #include "numbers.hpp"
 #include "options.hpp"
 #include "page_notes.hpp"
+#include "resin_figures.hpp"
 #include "scan_figures.hpp"
 #include "standard_streams.hpp"
 #include "text_file.hpp"
@@ -141,6 +142,8 @@ Figures figures_of(const LayerFile& file, const FileFigures& measured) {
         range.text = fmt::format("z = {} to {} mm", height(bottom), height(top));
     }
     figures.insert(figures.begin() + 1, std::move(range));
+    const Figures job = resin_figures(file);
+    figures.insert(figures.begin(), job.begin(), job.end());
     if (other_hatches > 0)
         figures.push_back(
             {"hatches", other_hatches, "hatched", counted(other_hatches, "line") + " of no exposure"});
@@ -258,7 +261,8 @@ Command info_command() {
         .description = fmt::format(
             "Describes the contents of files. For a mesh (.{}): size, volume, area, shells, and every kind "
             "of defect with its location and its effect on slicing. For a slice file: layers, contours, "
-            "points and volume; for scan vectors, lengths and times. Nothing is repaired.",
+            "points and volume; for scan vectors, lengths and times; for jobs of resin printers, pixels and "
+            "exposures. Nothing is repaired.",
             fmt::join(mesh_extensions(), ", .")),
         .operands = {{.placeholder = "FILE",
                       .help = "meshes and slice files; - is standard input",

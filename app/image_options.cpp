@@ -67,6 +67,29 @@ Option count_within(std::string name, std::string help, std::uint32_t least, std
 
 } // namespace
 
+namespace {
+
+/// Returns whether two names differ at most in the case of letters.
+bool same_name(std::string_view a, std::string_view b) {
+    const auto upper = [](char c) {
+        return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
+    };
+    return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                      [&](char left, char right) { return upper(left) == upper(right); });
+}
+
+/// Returns the printer of the job, if it is known and reads this format; otherwise null.
+const ResinPrinter* printer_of(const ResinJob& job, const LayerFormat& format) {
+    const std::span<const ResinPrinter> all = resin_printers();
+    const auto found = std::find_if(all.begin(), all.end(), [&](const ResinPrinter& one) {
+        return one.format == format.name && one.pixels.x == job.pixels.x && one.pixels.y == job.pixels.y &&
+               same_name(one.name, job.printer);
+    });
+    return found == all.end() ? nullptr : &*found;
+}
+
+} // namespace
+
 OptionGroup image_options(ImageArguments& target) {
     Option antialias =
         count_within("antialias",
@@ -143,16 +166,39 @@ void ImageArguments::apply(const LayerFormat& format, LayerWriteOptions& options
     image.raster.gamma = gamma.value_or(image.raster.gamma);
     if (!printer.empty())
         options.printer = &find_resin_printer(printer);
-    if (!resin.empty())
-        options.resin = read_resin_settings(resin);
-    if (exposure_s)
-        options.resin.exposure_s = exposure_s;
-    if (first_exposure_s)
-        options.resin.bottom_exposure_s = first_exposure_s;
-    if (fade_layers)
-        options.resin.transition_layers = fade_layers;
+    options.resin = settings_on({});
     if (format.exposure)
         options.resin.created_s = source_date();
+}
+
+ResinSettings ImageArguments::settings_on(ResinSettings settings) const {
+    if (!resin.empty())
+        settings = read_resin_settings(resin, std::move(settings));
+    if (exposure_s)
+        settings.exposure_s = exposure_s;
+    if (first_exposure_s)
+        settings.bottom_exposure_s = first_exposure_s;
+    if (fade_layers)
+        settings.transition_layers = fade_layers;
+    return settings;
+}
+
+void ImageArguments::apply_to(const LayerFile& file, const LayerFormat& format, LayerFileInfo& info,
+                              LayerWriteOptions& options) const {
+    if (!file.resin || !format.image)
+        return;
+    const ResinJob& job = *file.resin;
+    info.printer = job.printer;
+    ResinSettings settings = settings_of(job, file.planes);
+    if (!resin.empty() || exposure_s || first_exposure_s || fade_layers)
+        settings.ranges.clear(); // they hold the exposures that the options replace
+    settings.created_s = options.resin.created_s;
+    options.resin = settings_on(std::move(settings));
+    options.resin_of_file = true;
+    if (!antialias && job.antialias > 1 && job.antialias <= most_antialias)
+        options.image.raster.antialias = job.antialias;
+    if (printer.empty() && info.grid)
+        options.printer = printer_of(job, format);
 }
 
 } // namespace lamella::app

@@ -2,6 +2,7 @@
 
 // Options of image formats.
 
+#include "lamella/slices/layer_file.hpp"
 #include "lamella/slices/layer_writer.hpp"
 
 #include "command.hpp"
@@ -30,6 +31,14 @@ struct ImageArguments {
     /// Applies the options. Throws Error{usage} if some do not apply to the format, or if SOURCE_DATE_EPOCH
     /// is not a time.
     void apply(const LayerFormat& format, LayerWriteOptions& options) const;
+    /// Applies the options to the settings of a file that is converted: what is not given stays as it is in
+    /// the file. Nothing happens if it is no job for a resin printer.
+    void apply_to(const LayerFile& file, const LayerFormat& format, LayerFileInfo& info,
+                  LayerWriteOptions& options) const;
+
+  private:
+    /// Returns these settings, changed by the options.
+    [[nodiscard]] ResinSettings settings_on(ResinSettings settings) const;
 };
 
 [[nodiscard]] OptionGroup image_options(ImageArguments& target);

@@ -4,6 +4,7 @@
 #include "lamella/core/printable.hpp"
 #include "lamella/scan/strategy_fields.hpp"
 
+#include "messages.hpp"
 #include "numbers.hpp"
 #include "toml_file.hpp"
 
@@ -186,8 +187,7 @@ std::string group_text(std::span<const ResinField<Group>> fields, const Group& g
 
 } // namespace
 
-ResinSettings read_resin_settings(const std::string& path) {
-    ResinSettings settings;
+ResinSettings read_resin_settings(const std::string& path, ResinSettings settings) {
     for (const TomlEntry& entry : read_toml(path)) {
         if (entry.key == bottom_travel_key)
             read_group<PlateTravel>(entry.value, bottom_travel_key, travel_fields, settings.bottom_travel);

@@ -72,6 +72,8 @@ class ReadLimits {
     [[nodiscard]] bool in_memory() const noexcept { return kept_ == KeptPlanes::all; }
     /// For formats whose layers cannot be parsed one by one.
     void keep_in_memory() noexcept { kept_ = KeptPlanes::all; }
+    /// For formats of images, whose planes take little time to make again and much memory.
+    void parse_again() noexcept { kept_ = KeptPlanes::none; }
     /// For text formats; `bytes` is the size of the text.
     void keep_text_in_memory(std::uint64_t bytes) noexcept {
         if (kept_ == KeptPlanes::if_faster && !is_tight_for_layers(max_memory_, bytes))

@@ -211,7 +211,10 @@ void keep_planes(PlaneSource& source, std::vector<Plane> planes) {
 }
 
 PlaneSource with_parts(const PlaneSource& source, std::vector<std::size_t> parts) {
+    const bool all = parts.size() == source.parts.size() && std::is_sorted(parts.begin(), parts.end());
     PlaneSource some = source;
+    if (all)
+        return some;
     some.grid.reset();
     some.parts.clear();
     for (const std::size_t part : parts)

@@ -194,6 +194,18 @@ constexpr std::array kinds{
                        .one = "{count} layer lies elsewhere than the mesh's section, the first is {place}",
                        .many = "{count} layers lie elsewhere than the mesh's section, the first is {place}",
                        .count_key = "displaced"},
+    FindingDescription{.kind = FindingKind::mirrored_images,
+                       .name = "mirrored_images",
+                       .severity = Severity::defect,
+                       .origin = FindingOrigin::layers,
+                       .one = "the images show the part of the mesh {place}",
+                       .many = "the images show the part of the mesh {place}"},
+    FindingDescription{.kind = FindingKind::moved_images,
+                       .name = "moved_images",
+                       .severity = Severity::note,
+                       .origin = FindingOrigin::layers,
+                       .one = "the part is shifted by {place} mm on the display, in all layers alike",
+                       .many = "the part is shifted by {place} mm on the display, in all layers alike"},
     FindingDescription{.kind = FindingKind::near_faces,
                        .name = "near_faces",
                        .many =
@@ -464,6 +476,13 @@ constexpr std::array kinds{
                        .origin = FindingOrigin::output,
                        .many = "{count} of {layers} are shown thinned out, so that the page stays small: "
                                "contours are up to {largest:.6g} mm off{place}, figures are of all of them"},
+    FindingDescription{.kind = FindingKind::unwritten_settings,
+                       .name = "unwritten_settings",
+                       .origin = FindingOrigin::output,
+                       .one = "{count} setting of the job was left out, because the format cannot hold it: "
+                              "{place}",
+                       .many = "{count} settings of the job were left out, because the format cannot hold "
+                               "them, the first: {place}"},
     FindingDescription{.kind = FindingKind::flattened_triangles,
                        .name = "flattened_triangles",
                        .origin = FindingOrigin::output,
@@ -652,6 +671,12 @@ constexpr std::array kinds{
                               "left out (first at {place})",
                        .many = "{count} commands are unknown here, or have no numbers that they can have; "
                                "they were left out (first at {place})"},
+    FindingDescription{.kind = FindingKind::missing_pixels,
+                       .name = "missing_pixels",
+                       .origin = FindingOrigin::input,
+                       .one = "{count} image lacks its last pixel, which is taken for black ({place})",
+                       .many = "{count} images lack their last pixel, which is taken for black (first at "
+                               "{place})"},
 };
 
 } // namespace

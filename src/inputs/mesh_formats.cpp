@@ -103,9 +103,10 @@ constexpr std::array stl_rows = {
 constexpr std::array archive_and_text_rows = {
     // Zip archives.
     MeshFormatRow{.extension = "amf", .recognises = is_plain_or_compressed_amf, .read = read_amf},
-    MeshFormatRow{.recognises = by_archive<holds_images>,
-                  .advice = "holds images of layers, as for a resin printer: it is sliced already, and "
-                            "neither a mesh nor contours can be read from it"},
+    MeshFormatRow{
+        .recognises = by_archive<holds_images>,
+        .advice = "holds images of layers, as for a resin printer, and no mesh; of such archives, those of "
+                  "png-zip, SL1, Chitubox and NanoDLP can be viewed, converted and verified as they are"},
     MeshFormatRow{.extension = "3mf", .recognises = by_text<is_zip>, .read = read_three_mf},
     MeshFormatRow{.recognises = by_text<is_tar>,
                   .advice = "is a tar archive, no mesh file; unpack it, and take the mesh that is in it"},

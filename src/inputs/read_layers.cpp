@@ -56,7 +56,7 @@ LayerFile read_source(OpenedFile& file, const LayerReadOptions& options, const E
             throw NoLayers(fmt::format("{}: {}", source.name, other->advice));
         throw NoLayers(
             fmt::format("{}: found a zip archive that holds no layers; of archives, 3MF with slice "
-                        "stacks or toolpaths, NumPy arrays and ILT are read",
+                        "stacks or toolpaths, NumPy arrays, ILT and images for resin printers are read",
                         source.name));
     }
     if (const SliceFormat* const format = slice_format_of(bytes))
@@ -73,7 +73,7 @@ LayerFile read_source(OpenedFile& file, const LayerReadOptions& options, const E
     throw Error(ErrorKind::input,
                 fmt::format("{}: found '{}' at its beginning; a slice file is expected: {}, 3MF with slice "
                             "stacks or toolpaths, "
-                            "NumPy arrays or ILT",
+                            "NumPy arrays, ILT or images for resin printers",
                             source.name, printable(bytes.substr(0, 16), 48), signatures()));
 }
 

@@ -6,6 +6,7 @@ Needs LAMELLA_PROGRAM, and LAMELLA_ENCODE_RUNS (tests/slices/images/encode_runs.
 """
 
 import io
+import json
 import lzma
 import os
 import struct
@@ -259,6 +260,116 @@ def test_codes_give_the_bytes_of_vendors(tmp_path, name, code, layers):
         expected = [b"\x55" + chunks + bytes([resin_files.goo_checksum(chunks)]) for chunks in expected]
     found = encoded(code, job.pixels, runs)
     assert [index for index in range(layers) if found[index] != expected[index]] == []
+
+
+
+# Our reader. Its pixels are those of the other reader, or those of `png-zip`.
+
+SAMPLE_FILES = [row[0] for row in SAMPLE_CODES] + ["Smilie_cbddlp_v1.photon", "pyphotonfile_reference_v1.photon",
+                                                   "pyphotonfile_reference.sl1"]
+
+
+def sample(tmp_path, name):
+    if not (SAMPLES / name).exists():
+        pytest.skip(f"no {SAMPLES / name}; set LAMELLA_SHARED")
+    data = (SAMPLES / name).read_bytes()
+    path = tmp_path / name.removesuffix(".xz")
+    path.write_bytes(lzma.decompress(data) if name.endswith(".xz") else data)
+    return path
+
+
+@pytest.mark.parametrize("name", SAMPLE_FILES)
+def test_files_of_vendors_are_read_as_the_other_reader_does(tmp_path, name):
+    path = sample(tmp_path, name)
+    job = resin_files.read(path, check=False)
+    run("convert", path, tmp_path / "images.zip", "--format", "png-zip", "-q")
+    with zipfile.ZipFile(tmp_path / "images.zip") as archive:
+        layers = json.loads(archive.read("manifest.json"))["layers"]
+        assert [layer["top"] for layer in layers] == pytest.approx([layer.z_mm for layer in job.layers], abs=1e-5)
+        for index in range(0, len(layers), 1 + len(layers) // 12):
+            image = resin_files.decode_png(archive.read(layers[index]["file"]))[..., 0]
+            assert np.array_equal(image, job.layers[index].pixels()), index
+    found = json.loads(run("info", path, "--json").stdout)
+    assert tuple(found["pixels"]) == job.pixels
+    if all(layer.exposure_s is not None for layer in job.layers):
+        assert found["exposures_s"] == pytest.approx([layer.exposure_s for layer in job.layers])
+
+
+def test_images_are_those_that_another_project_expects(tmp_path):
+    run("convert", sample(tmp_path, "mars4max_gear_chitubox2.1.goo.xz"), tmp_path / "a.zip", "--format", "png-zip", "-q")
+    found = images(tmp_path / "a.zip")
+    for index in range(3):
+        expected = resin_files.decode_png((SAMPLES / f"mars4max_gear_layer{index}.png").read_bytes())[..., 0]
+        assert np.array_equal(found[index], expected)
+
+
+@pytest.mark.parametrize("name, extension", [("mars4max_gear_chitubox2.1.goo.xz", ".goo"), ("gear_photon_m3_v516.pm3.xz", ".pm3"),
+                                             ("gear_photon_mono_4k_v516.pwma.xz", ".pwma")])
+def test_a_file_of_a_vendor_keeps_its_bytes_of_layers_and_exposures(tmp_path, name, extension):
+    path = sample(tmp_path, name)
+    run("convert", path, tmp_path / f"again{extension}", "-q")
+    first, second = resin_files.read(path, check=False), resin_files.read(tmp_path / f"again{extension}")
+    assert [layer.picture.data() for layer in second.layers] == [layer.picture.data() for layer in first.layers]
+    assert [layer.exposure_s for layer in second.layers] == pytest.approx([layer.exposure_s for layer in first.layers])
+    assert [layer.z_mm for layer in second.layers] == pytest.approx([layer.z_mm for layer in first.layers], abs=1e-5)
+
+
+@pytest.mark.parametrize("printer, extension, kind, version, shown", PRINTERS, ids=NAMES)
+def test_our_files_are_read_back(part, tmp_path, printer, extension, kind, version, shown):
+    path = sliced(part, tmp_path / f"job{extension}", printer)
+    run("convert", path, tmp_path / "back.zip", "--format", "png-zip", "-q")
+    expected = images(sliced(part, tmp_path / "images.zip", printer, "--format", "png-zip"))
+    found = images(tmp_path / "back.zip")
+    assert len(found) == len(expected)
+    assert all(np.array_equal(one, shown(other)) for one, other in zip(found, expected))
+    # The part is as it was, wherever the display has it; and the same as itself.
+    assert "ok" in run("verify", path, "--mesh", part).stdout.splitlines()[0]
+    assert "agree" in run("compare", path, path).stdout
+
+
+def test_wrong_places_are_named(part, tmp_path):
+    path = sliced(part, tmp_path / "a.goo", "Elegoo Mars 4 DLP", "--mirror", "none")
+    data = bytearray(path.read_bytes())
+    data[195318] = 1  # says that the images are mirrored along x
+    path.write_bytes(data)
+    result = subprocess.run([PROGRAM, "verify", path, "--mesh", part], capture_output=True, text=True)
+    assert result.returncode == 4
+    assert "the images show the part of the mesh mirrored along x" in result.stdout
+
+
+def test_differences_are_counted(part, tmp_path):
+    one = sliced(part, tmp_path / "a.goo", "Elegoo Mars 4 DLP")
+    other = sliced(part, tmp_path / "b.goo", "Elegoo Mars 4 DLP", "--antialias", 1, "--exposure", 9)
+    result = subprocess.run([PROGRAM, "compare", one, other], capture_output=True, text=True)
+    assert result.returncode == 4
+    assert " pixels by up to 1" in result.stdout and "layer 10: exposure_s" in result.stdout
+
+
+def test_settings_are_converted_and_options_win(part, tmp_path):
+    path = sliced(part, tmp_path / "a.goo", "Elegoo Mars 4 DLP", "--exposure", 3, "--first-exposure", 33)
+    run("convert", path, tmp_path / "b.goo", "-q")
+    run("convert", path, tmp_path / "c.goo", "--exposure", 4, "-q")
+    run("convert", path, tmp_path / "d.ctb", "-q")
+    read = [resin_files.read(tmp_path / name) for name in ("a.goo", "b.goo", "c.goo", "d.ctb")]
+    exposures = [[layer.exposure_s for layer in job.layers] for job in read]
+    assert exposures[0] == exposures[1] == exposures[3]
+    assert exposures[2][-1] == 4 and exposures[2][0] == 33
+    assert read[3].printer == "ELEGOO Mars 4 DLP"
+    result = subprocess.run([PROGRAM, "convert", path, tmp_path / "e.goo", "--printer", "Saturn 3 Ultra"], capture_output=True,
+                            text=True)
+    assert result.returncode == 2
+    assert "(ELEGOO Mars 4 DLP)" in result.stderr and "Elegoo Saturn 3 Ultra has" in result.stderr
+    result = run("convert", sliced(part, tmp_path / "f.photon", "Anycubic Photon"), tmp_path / "f.nanodlp")
+    assert "1 setting of the job was left out" in result.stderr and (tmp_path / "f.nanodlp").exists()
+
+
+def test_outlines_are_converted_to_contours(part, tmp_path):
+    path = sliced(part, tmp_path / "a.goo", "Elegoo Mars 4 DLP")
+    run("convert", path, tmp_path / "a.cli", "-q")
+    run("view", path, "-o", tmp_path / "a.html", "-q")
+    one, other = (json.loads(run("info", name, "--json").stdout) for name in (path, tmp_path / "a.cli"))
+    assert one["points"] == other["points"] > 100
+    assert one["volume_mm3"] == pytest.approx(other["volume_mm3"], rel=1e-3)
 
 
 if __name__ == "__main__":

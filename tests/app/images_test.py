@@ -70,12 +70,24 @@ class Images(ProgramTest):
         self.assertEqual(image.chunks, ["IHDR", "IDAT", "IEND"])
         self.assertAlmostEqual(image.covered() * 0.04725 ** 2, 600, delta=0.5)
 
-    def test_images_given_for_a_mesh_or_for_contours_are_reported(self):
+    def test_images_given_for_a_mesh_are_reported(self):
         for name in ("part.sl1", "part.zip"):
             self.succeed("slice", self.box(), "-o", name, *(["--format", "png-zip"] if name == "part.zip" else []))
-            for command in (["slice", name, "-o", "x.cli"], ["convert", name, "x.cli"], ["info", name], ["view", name]):
-                with self.subTest(command):
-                    self.fail_with(3, name + ": holds images of layers, .*: it is sliced already", *command)
+            with self.subTest(name):
+                self.fail_with(3, name + ": holds images of layers", "slice", name, "-o", "x.cli")
+
+    def test_images_are_read_as_layers(self):
+        for name in ("part.sl1", "part.zip"):
+            self.succeed("slice", self.box(), "-o", name, *(["--format", "png-zip"] if name == "part.zip" else []))
+            with self.subTest(name):
+                self.succeed("convert", name, "x.cli")
+                found = self.succeed("info", name, "--json").json()
+                self.assertEqual(found["format"], "sl1" if name == "part.sl1" else "png-zip")
+                self.assertEqual(found["pixels"], [1440, 2560] if name == "part.sl1" else found["pixels"])
+                self.assertAlmostEqual(found["volume_mm3"] / 6000, 1, delta=0.02)
+                self.succeed("view", name, "-o", "x.html")
+                self.succeed("verify", name, "--mesh", "box.stl")
+                self.succeed("compare", name, name)
 
     def test_the_sl1s_has_a_display_of_its_own(self):
         self.succeed("slice", self.box(), "-o", "part.sl1s", "--layer-height", "1")

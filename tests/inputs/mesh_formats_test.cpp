@@ -62,12 +62,12 @@ TEST(MeshFile, RefusesSliceFilesByWhatTheyHold) {
     EXPECT_EQ(error_of(zip_test::zip_bytes({{.name = "points.npy", .content = "x"}}), "part.npz"),
               "part.npz: is a slice file (NumPy arrays): " + already);
     for (const std::string image : {"00000.png", "part/LAYER.PNG"})
-        EXPECT_EQ(
-            error_of(zip_test::zip_bytes(
-                         {{.name = "config.ini", .content = "x"}, {.name = image, .content = "x"}}),
-                     "job.sl1"),
-            "job.sl1: holds images of layers, as for a resin printer: it is sliced already, and neither a "
-            "mesh nor contours can be read from it");
+        EXPECT_EQ(error_of(zip_test::zip_bytes(
+                               {{.name = "config.ini", .content = "x"}, {.name = image, .content = "x"}}),
+                           "job.sl1"),
+                  "job.sl1: holds images of layers, as for a resin printer, and no mesh; of such archives, "
+                  "those of "
+                  "png-zip, SL1, Chitubox and NanoDLP can be viewed, converted and verified as they are");
 }
 
 TEST(MeshFile, IsNotGuessedToBeBinaryStlUnderTheNameOfASliceFile) {

@@ -138,7 +138,7 @@ struct PlaneSource {
                                     const Execution& execution = {.threads = 1});
 
 /// Returns the source with only the parts at these positions, ascending. Contents and largest coordinates
-/// remain those of all parts. Images are dropped.
+/// remain those of all parts. Images are dropped unless all parts remain.
 [[nodiscard]] PlaneSource with_parts(const PlaneSource& source, std::vector<std::size_t> parts);
 
 } // namespace lamella

@@ -40,6 +40,8 @@ enum class FindingKind : std::uint32_t {
     uncompared_layers,     ///< layers that are not compared with the mesh, because contours are open
     other_areas,           ///< layers whose area differs from that of the mesh's section
     displaced_layers,      ///< layers whose area agrees but whose centroid differs
+    mirrored_images,       ///< images that show the part of the mesh mirrored
+    moved_images,          ///< images that show it elsewhere than the mesh has it
 
     near_faces, ///< horizontal faces that are on a plane except for rounding
 
@@ -84,6 +86,7 @@ enum class FindingKind : std::uint32_t {
     other_cuts,            ///< layers that were cut elsewhere than there or in the middle
     hidden_hatch_lines,    ///< layers of a page that are shown without their hatches
     thinned_layers,        ///< layers of a page that are shown with fewer points
+    unwritten_settings,    ///< settings of a job for a resin printer
     flattened_triangles,   ///< triangles of a mesh that lose their area or a corner by rounding
 
     // Irregularities of a slice file, and how its reader treated them.
@@ -114,6 +117,7 @@ enum class FindingKind : std::uint32_t {
     unlisted_files,         ///< files that are not in the list of an archive
     dropped_contours,       ///< contours with too few different points
     unknown_commands,       ///< commands that are unknown
+    missing_pixels,         ///< images that lack their last pixel
 };
 
 enum class Severity : std::uint8_t {

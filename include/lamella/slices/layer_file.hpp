@@ -3,8 +3,10 @@
 // Slice files as they are read.
 
 #include "lamella/contour/plane_source.hpp"
+#include "lamella/slices/resin_job.hpp"
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,6 +31,7 @@ struct LayerFile : PlaneSource {
     /// The warning that the heights in the file are interpreted as bottoms of layers although the format
     /// defines them as tops; empty unless the reader guessed so.
     std::string guess = {};
+    std::optional<ResinJob> resin = {}; ///< the job, if the file is for a resin printer
 };
 
 } // namespace lamella

@@ -67,6 +67,10 @@ struct LayerFileInfo {
     /// If set, only this range is written, to LayerFileChunk::put instead of a file. It must outlive the
     /// writer.
     const LayerFileChunk* chunk = nullptr;
+    /// If set, each plane has an image with these pixels (see PlaneSource::grid), and formats of images write
+    /// these pixels. The display of the options must then have as many.
+    std::optional<PixelGrid> grid = {};
+    std::string printer = {}; ///< name of the printer for which these images were made; may be ""
     /// If set, the bytes of the file replace the content of this string, and no file is made. The path is
     /// then only a name for errors. It must outlive the writer.
     std::string* memory = nullptr;
@@ -117,6 +121,9 @@ struct LayerWriteOptions {
     const ResinPrinter* printer = nullptr;
     /// Options of the formats with LayerFormat::exposure.
     ResinSettings resin = {};
+    /// True if these settings come from the file that is converted. What the format cannot hold of them is
+    /// then left out with a warning; otherwise it is an error.
+    bool resin_of_file = false;
     /// Options of the format html.
     PageOptions page = {};
 };

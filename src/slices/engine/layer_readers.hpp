@@ -71,4 +71,27 @@ ReadLayersOfArchive read_slices_3mf;
 [[nodiscard]] bool is_toolpath_3mf(const ZipReader& package);
 ReadLayersOfArchive read_toolpath_3mf;
 
+/// Elegoo's .goo and Phrozen's .prz, version 3.0.
+[[nodiscard]] bool is_goo(std::string_view bytes);
+ReadLayers read_goo;
+/// Chitubox's .ctb, versions 1 to 5; encrypted files are recognised and refused.
+[[nodiscard]] bool is_ctb(std::string_view bytes);
+ReadLayers read_ctb;
+/// Chitubox's .cbddlp and .photon, versions 1 and 2.
+[[nodiscard]] bool is_cbddlp(std::string_view bytes);
+ReadLayers read_cbddlp;
+/// Anycubic's container of Photon Workshop, versions 1 and 515 to 518.
+[[nodiscard]] bool is_anycubic(std::string_view bytes);
+ReadLayers read_anycubic;
+/// Zip archives of images: those of `png-zip`, of Prusa's SL1 and SL1S, of Chitubox, and of NanoDLP. Each is
+/// recognised by the names of its files.
+[[nodiscard]] bool is_image_archive(const ZipReader& archive);
+ReadLayersOfArchive read_image_archive;
+[[nodiscard]] bool is_sl1(const ZipReader& archive);
+ReadLayersOfArchive read_sl1;
+[[nodiscard]] bool is_chitubox_zip(const ZipReader& archive);
+ReadLayersOfArchive read_chitubox_zip;
+[[nodiscard]] bool is_nanodlp(const ZipReader& archive);
+ReadLayersOfArchive read_nanodlp;
+
 } // namespace lamella

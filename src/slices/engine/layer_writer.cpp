@@ -151,7 +151,8 @@ LayerFileInfo info_of(const PlaneSource& source) {
                        .layers = source.planes.size(),
                        .bottom = source.planes.front().bottom,
                        .parts = source.parts,
-                       .rule = source.rule};
+                       .rule = source.rule,
+                       .grid = source.grid};
     for (PartInfo& part : info.parts) {
         if (part.label.empty())
             part.label = PartInfo{}.label;

@@ -149,6 +149,104 @@ Display display_for(const Box3& box, const ImageOptions& options, const ResinPri
     return display;
 }
 
+namespace {
+
+/// Returns the grid of an image that is mirrored along its columns or rows.
+PixelGrid mirrored(PixelGrid grid, bool columns, bool rows) noexcept {
+    if (columns) {
+        grid.ux = 0.0 - grid.ux;
+        grid.uy = 0.0 - grid.uy;
+        grid.u0 = grid.width - grid.u0;
+    }
+    if (rows) {
+        grid.vx = 0.0 - grid.vx;
+        grid.vy = 0.0 - grid.vy;
+        grid.v0 = grid.height - grid.v0;
+    }
+    return grid;
+}
+
+/// Throws unless images with the pixels of `has` fit the display `wanted`.
+void check_pixels(const Display& has, const Display& wanted, const std::string& made_for,
+                  const ResinPrinter& printer) {
+    const auto name = [](std::string_view printer_name, std::string_view other) {
+        return printer_name.empty() ? std::string(other) : std::string(printer_name);
+    };
+    const std::string file =
+        made_for.empty() ? "the images of the file" : fmt::format("the images of the file ({})", made_for);
+    const std::string display = name(printer.name, "the display");
+    if (has.pixels.x != wanted.pixels.x || has.pixels.y != wanted.pixels.y || has.portrait != wanted.portrait)
+        throw Error(
+            ErrorKind::usage,
+            fmt::format("{} have {} x {} pixels{}, and {} has {} x {}{}; pixels are kept as they are, so "
+                        "give a printer with the same, or slice the mesh for this one",
+                        file, has.pixels.x, has.pixels.y, has.portrait ? " (portrait)" : "", display,
+                        wanted.pixels.x, wanted.pixels.y, wanted.portrait ? " (portrait)" : ""));
+    constexpr double most = 0.01; // sizes are rounded in files and lists
+    if (std::abs(has.pixel_mm.x / wanted.pixel_mm.x - 1) > most ||
+        std::abs(has.pixel_mm.y / wanted.pixel_mm.y - 1) > most)
+        throw Error(ErrorKind::usage,
+                    fmt::format("{} have pixels of {:.4g} x {:.4g} mm, and {} has pixels of {:.4g} x {:.4g} "
+                                "mm: the part would get another size; slice the mesh for this display",
+                                file, has.pixel_mm.x, has.pixel_mm.y, display, wanted.pixel_mm.x,
+                                wanted.pixel_mm.y));
+}
+
+/// Returns the options, completed by the display of the images where neither they nor the printer say
+/// anything.
+ImageOptions with_images(ImageOptions options, const Display& images, const ResinPrinter& printer) {
+    if (!printer.name.empty())
+        return options;
+    if (!options.pixels && !(options.pixel_mm && options.display_mm))
+        options.pixels = images.pixels;
+    if (!options.pixel_mm && !options.display_mm)
+        options.pixel_mm = images.pixel_mm;
+    if (!options.portrait)
+        options.portrait = images.portrait;
+    if (!options.mirror_x)
+        options.mirror_x = images.mirror_x;
+    if (!options.mirror_y)
+        options.mirror_y = images.mirror_y;
+    return options;
+}
+
+} // namespace
+
+// The inverse of Display::grid.
+Display display_of(const PixelGrid& grid) noexcept {
+    const bool portrait = grid.ux == 0;
+    const double u = portrait ? grid.uy : grid.ux;
+    const double v = portrait ? grid.vx : grid.vy;
+    const double pixel_u = 1 / std::abs(u);
+    const double pixel_v = 1 / std::abs(v);
+    Display display{.pixels = {grid.width, grid.height},
+                    .pixel_mm = {pixel_u, pixel_v},
+                    .portrait = portrait,
+                    .mirror_x = (u < 0) != portrait,
+                    .mirror_y = v > 0};
+    if (portrait) {
+        std::swap(display.pixels.x, display.pixels.y);
+        std::swap(display.pixel_mm.x, display.pixel_mm.y);
+    }
+    return display;
+}
+
+DisplayGrid display_grid(const LayerFileInfo& info, const ImageOptions& options,
+                         const ResinPrinter& printer) {
+    if (!info.grid) {
+        const Display display = display_for(info.box, options, printer);
+        return {display, display.grid(info.box)};
+    }
+    const Display images = display_of(*info.grid);
+    Box3 flat; // the part is where it is, so only its height must fit
+    flat.add(Point3{0, 0, info.box.min.z});
+    flat.add(Point3{0, 0, info.box.max.z});
+    const Display display = display_for(flat, with_images(options, images, printer), printer);
+    check_pixels(images, display, info.printer, printer);
+    const bool turn = display.mirror_x != images.mirror_x;
+    return {display, mirrored(*info.grid, turn, display.mirror_y != images.mirror_y)};
+}
+
 RasterOptions raster_for(const ImageOptions& options, const ResinPrinter& printer) {
     RasterOptions raster = options.raster;
     if (!printer.grey)

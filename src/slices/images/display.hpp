@@ -4,6 +4,7 @@
 
 #include "lamella/raster/image.hpp"
 #include "lamella/slices/image_options.hpp"
+#include "lamella/slices/layer_writer.hpp"
 #include "lamella/slices/resin_printer.hpp"
 
 #include <cstdint>
@@ -29,6 +30,21 @@ struct Display {
 /// each other, or if a part with this box does not fit, also in its height; the error then states by how
 /// much.
 [[nodiscard]] Display display_for(const Box3& box, const ImageOptions& options, const ResinPrinter& printer);
+
+/// A display and the pixel grid of images for it.
+struct DisplayGrid {
+    Display display;
+    PixelGrid grid;
+};
+
+/// Returns the display that images with this grid were made for.
+[[nodiscard]] Display display_of(const PixelGrid& grid) noexcept;
+
+/// Returns the display that the options describe, on this printer, for the layers of this file. If these have
+/// images, what neither describes is that of the images. Throws as `display_for` does, and Error{usage},
+/// which names both, if the images have other pixels than the display.
+[[nodiscard]] DisplayGrid display_grid(const LayerFileInfo& info, const ImageOptions& options,
+                                       const ResinPrinter& printer);
 
 /// Returns the options of images for this printer: without grey if its display shows none.
 [[nodiscard]] RasterOptions raster_for(const ImageOptions& options, const ResinPrinter& printer);

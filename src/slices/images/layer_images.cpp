@@ -8,7 +8,9 @@
 #include "slices/images/png.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 namespace lamella {
@@ -58,16 +60,110 @@ RasterAreas draw_parts(std::span<const Layer> all, const PixelGrid& grid, Raster
     return rasterise(parts, grid, options, sink);
 }
 
-// Draws an empty image so that impossible options are reported before the first layer.
-LayerImages::LayerImages(const PixelGrid& grid, const RasterOptions& options)
-    : grid_(grid), options_(options) {
-    static_cast<void>(image({}));
+namespace {
+
+/// Visits the rows of an image from one of its ends to the other.
+class ImageRows {
+  public:
+    ImageRows(const RunImage& image, bool mirror_columns) : image_(image), mirror_columns_(mirror_columns) {}
+
+    /// Returns the runs of a row, which are valid until the next call.
+    [[nodiscard]] std::span<const PixelRun> row(std::uint32_t r) {
+        const std::uint64_t begin = std::uint64_t{r} * image_.width;
+        const std::uint64_t end = begin + image_.width;
+        while (at_ > 0 && image_.runs[at_ - 1].end > begin)
+            --at_;
+        while (image_.runs[at_].end <= begin)
+            ++at_;
+        runs_.clear();
+        for (std::size_t i = at_; runs_.empty() || runs_.back().end < image_.width; ++i)
+            runs_.push_back({static_cast<std::uint32_t>(std::min(image_.runs[i].end, end) - begin),
+                             image_.runs[i].value});
+        if (mirror_columns_)
+            mirror();
+        return runs_;
+    }
+
+  private:
+    void mirror() {
+        std::reverse(runs_.begin(), runs_.end());
+        for (std::size_t i = 0; i < runs_.size(); ++i) // the run that now follows ended where this one began
+            runs_[i].end = image_.width - (i + 1 < runs_.size() ? runs_[i + 1].end : 0);
+    }
+
+    const RunImage& image_;
+    bool mirror_columns_;
+    std::size_t at_ = 0; ///< a run of the last row
+    std::vector<PixelRun> runs_;
+};
+
+/// Makes a row black and white.
+void make_black_and_white(std::vector<PixelRun>& row) {
+    std::size_t kept = 0;
+    for (const PixelRun& run : row) {
+        const std::uint8_t value = run.value >= 128 ? 255 : 0;
+        if (kept > 0 && row[kept - 1].value == value)
+            row[kept - 1].end = run.end;
+        else
+            row[kept++] = {run.end, value};
+    }
+    row.resize(kept);
 }
 
-LayerImage LayerImages::image(std::span<const Layer> all) const {
-    PngEncoder encoder(grid_.width, grid_.height);
-    const RasterAreas areas =
-        draw_parts(all, grid_, options_, [&](auto row, auto times) { encoder.add(row, times); });
+double value_of(std::span<const PixelRun> row) {
+    std::uint64_t sum = 0;
+    std::uint32_t from = 0;
+    for (const PixelRun& run : row) {
+        sum += std::uint64_t{run.end - from} * run.value;
+        from = run.end;
+    }
+    return static_cast<double>(sum) / 255;
+}
+
+} // namespace
+
+PlaneDrawing::PlaneDrawing(const PixelGrid& grid, const RasterOptions& options,
+                           const std::optional<PixelGrid>& images)
+    : grid_(grid), options_(options),
+      mirror_columns_(images && (images->ux != grid.ux || images->uy != grid.uy)),
+      mirror_rows_(images && (images->vx != grid.vx || images->vy != grid.vy)) {}
+
+RasterAreas PlaneDrawing::draw(const Plane& plane, const RowSink& sink) const {
+    return plane.image ? draw_image(*plane.image, sink) : draw_parts(plane.polylines, grid_, options_, sink);
+}
+
+RasterAreas PlaneDrawing::draw_image(const RunImage& image, const RowSink& sink) const {
+    assert(image.width == grid_.width && image.height == grid_.height);
+    ImageRows rows(image, mirror_columns_);
+    RasterAreas areas;
+    std::vector<PixelRun> same; // the last rows, which are equal
+    std::uint32_t times = 0;
+    std::vector<PixelRun> row;
+    for (std::uint32_t r = 0; r < image.height; ++r) {
+        const std::span<const PixelRun> runs = rows.row(mirror_rows_ ? image.height - 1 - r : r);
+        row.assign(runs.begin(), runs.end());
+        if (options_.antialias == 1)
+            make_black_and_white(row);
+        areas.covered += value_of(row);
+        if (times > 0 && row != same) {
+            sink(same, times);
+            times = 0;
+        }
+        std::swap(row, same);
+        ++times;
+    }
+    sink(same, times);
+    return areas;
+}
+
+// Draws an empty image so that impossible options are reported before the first layer.
+LayerImages::LayerImages(const PlaneDrawing& drawing) : drawing_(drawing) {
+    static_cast<void>(image(Plane()));
+}
+
+LayerImage LayerImages::image(const Plane& plane) const {
+    PngEncoder encoder(grid().width, grid().height);
+    const RasterAreas areas = drawing_.draw(plane, [&](auto row, auto times) { encoder.add(row, times); });
     const std::shared_ptr<ByteBuffer> file = buffers_->take();
     encoder.finish(*file);
     return {file, crc32_of(file->view()), areas};

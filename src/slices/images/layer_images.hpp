@@ -11,6 +11,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 
 namespace lamella {
@@ -32,20 +33,40 @@ struct LayerImage {
 RasterAreas draw_parts(std::span<const Layer> all, const PixelGrid& grid, RasterOptions options,
                        const RowSink& sink);
 
-/// Makes images with the same grid and options. May be used by any number of threads at once.
-class LayerImages {
+/// Draws planes with the same grid and options: from their images if they have one, and otherwise from their
+/// contours. May be used by any number of threads at once.
+class PlaneDrawing {
   public:
-    LayerImages(const PixelGrid& grid, const RasterOptions& options);
+    /// `images` is the grid of the images of planes. It is mirrored if `grid` is, and equal otherwise.
+    PlaneDrawing(const PixelGrid& grid, const RasterOptions& options, const std::optional<PixelGrid>& images);
 
-    /// Draws all parts into one image.
-    [[nodiscard]] LayerImage image(std::span<const Layer> all) const;
+    RasterAreas draw(const Plane& plane, const RowSink& sink) const;
 
     [[nodiscard]] const PixelGrid& grid() const noexcept { return grid_; }
     [[nodiscard]] const RasterOptions& options() const noexcept { return options_; }
 
   private:
+    RasterAreas draw_image(const RunImage& image, const RowSink& sink) const;
+
     PixelGrid grid_;
     RasterOptions options_;
+    bool mirror_columns_ = false; ///< of images
+    bool mirror_rows_ = false;
+};
+
+/// Makes images with the same grid and options. May be used by any number of threads at once.
+class LayerImages {
+  public:
+    explicit LayerImages(const PlaneDrawing& drawing);
+
+    /// Draws all parts into one image.
+    [[nodiscard]] LayerImage image(const Plane& plane) const;
+
+    [[nodiscard]] const PixelGrid& grid() const noexcept { return drawing_.grid(); }
+    [[nodiscard]] const RasterOptions& options() const noexcept { return drawing_.options(); }
+
+  private:
+    PlaneDrawing drawing_;
     std::shared_ptr<BufferPool> buffers_ = std::make_shared<BufferPool>();
 };
 

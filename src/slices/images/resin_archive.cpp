@@ -4,9 +4,10 @@
 
 namespace lamella {
 
-ResinWriter::DrawnLayer ResinArchive::drawn(std::span<const Layer> parts, std::uint64_t /*index*/) {
-    const LayerImage image = images_.image(parts);
-    return {image.areas, [this, image, text = described(parts)](const ResinLayer& layer, Completions& after) {
+ResinWriter::DrawnLayer ResinArchive::drawn(const Plane& plane, std::uint64_t /*index*/) {
+    const LayerImage image = images_.image(plane);
+    return {image.areas,
+            [this, image, text = described(plane.polylines)](const ResinLayer& layer, Completions& after) {
                 note(layer, text);
                 archive_.add_ready(image_name(layer), ZipMethod::stored, image.in_zip(), image.file, after);
             }};

@@ -20,7 +20,7 @@ class ResinArchive : public ResinWriter {
   protected:
     ResinArchive(const std::string& path, const LayerFileInfo& info, const LayerWriteOptions& options,
                  const ResinJobKind& kind, const ResinPrinter& printer)
-        : ResinWriter(info, options, kind, printer), images_(grid(), raster()),
+        : ResinWriter(info, options, kind, printer), images_(drawing()),
           archive_(path, Overwriting::no, info.memory) {}
 
     /// Returns the name of the image of a layer.
@@ -40,7 +40,7 @@ class ResinArchive : public ResinWriter {
                      std::uint32_t height);
 
   private:
-    DrawnLayer drawn(std::span<const Layer> parts, std::uint64_t index) final;
+    DrawnLayer drawn(const Plane& plane, std::uint64_t index) final;
     void end_job(const ResinTotals& totals) final;
 
     LayerImages images_;

@@ -18,7 +18,7 @@ ResinFile::ResinFile(const std::string& path, const LayerFileInfo& info, const L
     : ResinWriter(info, options, kind, printer), codes_(std::move(codes)), head_bytes_(head_bytes),
       file_(path, Overwriting::yes, info.memory) {
     // An empty image, so that impossible options are reported before the first layer.
-    draw_parts({}, grid(), raster(), [](auto, auto) {});
+    drawing().draw(Plane(), [](auto, auto) {});
     const std::string block(std::size_t{1} << 16, '\0');
     for (std::uint64_t left = head_bytes_; left > 0;) {
         const auto size = static_cast<std::size_t>(std::min<std::uint64_t>(left, block.size()));
@@ -27,7 +27,7 @@ ResinFile::ResinFile(const std::string& path, const LayerFileInfo& info, const L
     }
 }
 
-ResinWriter::DrawnLayer ResinFile::drawn(std::span<const Layer> parts, std::uint64_t index) {
+ResinWriter::DrawnLayer ResinFile::drawn(const Plane& plane, std::uint64_t index) {
     Images images;
     images.index = index;
     std::vector<RunEncoder> encoders;
@@ -36,7 +36,7 @@ ResinWriter::DrawnLayer ResinFile::drawn(std::span<const Layer> parts, std::uint
         images.files.push_back(buffer());
         encoders.emplace_back(code, *images.files.back());
     }
-    const RasterAreas areas = draw_parts(parts, grid(), raster(), [&](auto row, auto times) {
+    const RasterAreas areas = drawing().draw(plane, [&](auto row, auto times) {
         for (RunEncoder& encoder : encoders)
             encoder.add(row, times);
     });

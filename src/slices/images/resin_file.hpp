@@ -48,7 +48,7 @@ class ResinFile : public ResinWriter {
     void check_32_bits(std::uint64_t position) const;
 
   private:
-    DrawnLayer drawn(std::span<const Layer> parts, std::uint64_t index) final;
+    DrawnLayer drawn(const Plane& plane, std::uint64_t index) final;
     void end_job(const ResinTotals& totals) final;
 
     std::vector<RunCode> codes_;

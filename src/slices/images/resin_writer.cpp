@@ -17,7 +17,10 @@ namespace {
 /// The side of the preview, from which those of all sizes are made.
 constexpr std::uint32_t relief_side = 640;
 
-ResinSettings settings_for(const ResinJobKind& kind, ResinSettings settings) {
+ResinSettings settings_for(const ResinJobKind& kind, const LayerWriteOptions& options) {
+    ResinSettings settings = options.resin;
+    if (!kind.own_exposures && options.resin_of_file)
+        settings.ranges.clear();
     if (!kind.own_exposures && !settings.ranges.empty())
         throw Error(
             ErrorKind::usage,
@@ -33,7 +36,8 @@ ResinSettings settings_for(const ResinJobKind& kind, ResinSettings settings) {
 
 } // namespace
 
-ResinPrinter printer_for(const LayerWriteOptions& options, std::string_view format) {
+ResinPrinter printer_for(const LayerFileInfo& info, const LayerWriteOptions& options,
+                         std::string_view format) {
     if (options.printer != nullptr) {
         const ResinPrinter& printer = *options.printer;
         if (printer.format.empty() || printer.format == format)
@@ -42,6 +46,8 @@ ResinPrinter printer_for(const LayerWriteOptions& options, std::string_view form
                                                   printer.name, printer.format, printer.extension, format));
     }
     const ImageOptions& image = options.image;
+    if (info.grid)
+        return {};
     if (!image.pixels && !(image.pixel_mm && image.display_mm))
         throw Error(
             ErrorKind::usage,
@@ -51,7 +57,9 @@ ResinPrinter printer_for(const LayerWriteOptions& options, std::string_view form
     return {.mirror_x = true};
 }
 
-std::string machine_name_of(const ResinPrinter& printer) {
+std::string machine_name_of(const LayerFileInfo& info, const ResinPrinter& printer) {
+    if (printer.name.empty())
+        return info.printer;
     constexpr std::string_view elegoo = "Elegoo ";
     const std::string_view name = printer.name;
     return name.starts_with(elegoo) ? fmt::format("ELEGOO {}", name.substr(elegoo.size()))
@@ -59,19 +67,26 @@ std::string machine_name_of(const ResinPrinter& printer) {
 }
 
 ResinWriter::ResinWriter(const LayerFileInfo& info, const LayerWriteOptions& options,
-                         const ResinJobKind& kind, const ResinPrinter& printer)
+                         const ResinJobKind& kind, const ResinPrinter& printer, const DisplayGrid& display)
     : OrderedWriter(info, {.open_chains = false, .supports = true}), kind_(kind), printer_(printer),
-      display_(display_for(info.box, options.image, printer)), grid_(display_.grid(info.box)),
-      raster_(raster_for(options.image, printer)), plan_(settings_for(kind, options.resin), printer),
-      relief_(info.box, relief_side, relief_side), bottom_(info.bottom),
-      part_mm_(info.box.max.z - info.bottom) {}
+      display_(display.display), machine_name_(machine_name_of(info, printer)),
+      drawing_(display.grid, raster_for(options.image, printer), info.grid),
+      plan_(settings_for(kind, options), printer), relief_(info.box, relief_side, relief_side),
+      bottom_(info.bottom), part_mm_(info.box.max.z - info.bottom) {
+    if (!kind.own_exposures && options.resin_of_file && !options.resin.ranges.empty())
+        leave_out("exposures of single layers");
+}
+
+void ResinWriter::leave_out(std::string setting) {
+    add_loss({.kind = FindingKind::unwritten_settings, .count = 1, .place = std::move(setting)});
+}
 
 double ResinWriter::machine_mm() const noexcept {
     return printer_.height_mm > 0 ? printer_.height_mm : part_mm_;
 }
 
 OrderedWriter::Write ResinWriter::formatted(const Plane& plane) {
-    return [this, image = drawn(plane.polylines, plane.polylines.front().index),
+    return [this, image = drawn(plane, plane.polylines.front().index),
             seen = relief_.spans(plane.polylines)](const PlanePosition& offset, Completions& after) {
         relief_.add(seen);
         check_heights(offset);

@@ -7,6 +7,7 @@
 #include "raster/relief.hpp"
 #include "slices/engine/ordered_writer.hpp"
 #include "slices/images/display.hpp"
+#include "slices/images/layer_images.hpp"
 #include "slices/images/resin_plan.hpp"
 
 #include <cstdint>
@@ -20,12 +21,15 @@
 namespace lamella {
 
 /// Returns the printer of the options for a format. Without one, the options of images must determine the
-/// pixels of the display, which is taken to be mirrored along x, as nearly all are. Throws Error{usage} if
-/// neither is given, or if the printer reads another format.
-[[nodiscard]] ResinPrinter printer_for(const LayerWriteOptions& options, std::string_view format);
+/// pixels of the display, which is taken to be mirrored along x, as nearly all are; or the layers have
+/// images, whose display it is. Throws Error{usage} if none of these is given, or if the printer reads
+/// another format.
+[[nodiscard]] ResinPrinter printer_for(const LayerFileInfo& info, const LayerWriteOptions& options,
+                                       std::string_view format);
 
-/// Returns the name of the printer as files of its maker have it.
-[[nodiscard]] std::string machine_name_of(const ResinPrinter& printer);
+/// Returns the name of the printer as files of its maker have it. Without a printer, it is the one for which
+/// the images of the layers were made.
+[[nodiscard]] std::string machine_name_of(const LayerFileInfo& info, const ResinPrinter& printer);
 
 /// Layers and abilities of a format.
 struct ResinJobKind {
@@ -63,7 +67,8 @@ struct ResinTotals {
 class ResinWriter : public OrderedWriter {
   protected:
     ResinWriter(const LayerFileInfo& info, const LayerWriteOptions& options, const ResinJobKind& kind,
-                const ResinPrinter& printer);
+                const ResinPrinter& printer)
+        : ResinWriter(info, options, kind, printer, display_grid(info, options.image, printer)) {}
 
     /// Appends a layer to the file, or leaves that to completions. Called in order.
     using WriteLayer = std::function<void(const ResinLayer& layer, Completions& after)>;
@@ -73,22 +78,27 @@ class ResinWriter : public OrderedWriter {
     };
     /// Draws and encodes the image of a layer. Called from any threads. `index` is that of the layer, which
     /// usually is ResinLayer::number.
-    [[nodiscard]] virtual DrawnLayer drawn(std::span<const Layer> parts, std::uint64_t index) = 0;
+    [[nodiscard]] virtual DrawnLayer drawn(const Plane& plane, std::uint64_t index) = 0;
     /// Ends the file and gives it its name.
     virtual void end_job(const ResinTotals& totals) = 0;
+    /// Counts a setting of a converted file that the format cannot hold.
+    void leave_out(std::string setting);
 
     [[nodiscard]] const ResinPrinter& printer() const noexcept { return printer_; }
     [[nodiscard]] const Display& display() const noexcept { return display_; }
-    [[nodiscard]] const PixelGrid& grid() const noexcept { return grid_; }
-    [[nodiscard]] const RasterOptions& raster() const noexcept { return raster_; }
+    [[nodiscard]] const PixelGrid& grid() const noexcept { return drawing_.grid(); }
+    [[nodiscard]] const RasterOptions& raster() const noexcept { return drawing_.options(); }
+    [[nodiscard]] const PlaneDrawing& drawing() const noexcept { return drawing_; }
     [[nodiscard]] const ResinPlan& plan() const noexcept { return plan_; }
     /// Returns the largest height of a part, or the height of this one if the printer's is unknown.
     [[nodiscard]] double machine_mm() const noexcept;
-    [[nodiscard]] std::string machine_name() const { return machine_name_of(printer_); }
+    [[nodiscard]] const std::string& machine_name() const noexcept { return machine_name_; }
     /// Returns the image of the part from all layers that were written.
     [[nodiscard]] ColourImage preview() const { return relief_.image(); }
 
   private:
+    ResinWriter(const LayerFileInfo& info, const LayerWriteOptions& options, const ResinJobKind& kind,
+                const ResinPrinter& printer, const DisplayGrid& display);
     Write formatted(const Plane& plane) final;
     void end_file() final;
     void check_heights(const PlanePosition& offset);
@@ -97,8 +107,8 @@ class ResinWriter : public OrderedWriter {
     ResinJobKind kind_;
     ResinPrinter printer_;
     Display display_;
-    PixelGrid grid_;
-    RasterOptions raster_;
+    std::string machine_name_;
+    PlaneDrawing drawing_;
     ResinPlan plan_;
     Relief relief_;
     double bottom_; ///< of the first layer

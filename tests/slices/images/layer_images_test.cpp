@@ -19,13 +19,14 @@ namespace {
 
 TEST(LayerImages, CoverOnceWhatOverlaps) {
     const PixelGrid grid{.width = 60, .height = 60, .u0 = 30, .v0 = 30};
-    const LayerImages images(grid, {});
+    const LayerImages images(PlaneDrawing(grid, {}, {}));
     const LayerStack layers = random_layers(9, 60, 50, {0, 0}, false);
     int overlapping = 0;
     for (std::size_t i = 1; i < layers.size(); ++i) {
         const std::span<const Layer> parts(&layers[i - 1], 1 + i % 2);
         overlapping += winds_once(parts) ? 0 : 1;
-        const PngFile image = read_png(std::string(images.image(parts).file->view()));
+        const PngFile image = read_png(
+            std::string(images.image(Plane(std::vector<Layer>(parts.begin(), parts.end()))).file->view()));
         const GreyImage expected = paint(parts, grid);
         std::size_t others = 0;
         for (std::size_t k = 0; k < expected.values.size(); ++k) {
@@ -39,14 +40,14 @@ TEST(LayerImages, CoverOnceWhatOverlaps) {
 }
 
 TEST(LayerImages, AHoleWhoseOuterContourIsOpenIsNoBody) {
-    const LayerImages images({.width = 60, .height = 60, .u0 = 0, .v0 = 0}, {});
+    const LayerImages images(PlaneDrawing({.width = 60, .height = 60, .u0 = 0, .v0 = 0}, {}, {}));
     const auto covered = [&](bool torn) {
         LayerBuilder builder;
         add_contour(builder, {{5, 5}, {5, 15}, {15, 15}, {15, 5}});
         add_contour(builder, {{0, 0}, {20, 0}, {20, 20}, {0, 20}}, !torn);
         add_contour(builder, {{30, 0}, {34, 0}, {34, 5}, {30, 5}});
         const std::vector<Layer> parts{builder.finish(0, 0.5, 0, 1)};
-        return images.image(parts).areas.covered;
+        return images.image(Plane(parts)).areas.covered;
     };
     EXPECT_EQ(covered(false), 20 * 20 - 10 * 10 + 4 * 5);
     EXPECT_EQ(covered(true), 4 * 5) << "what is whole is drawn";
@@ -56,7 +57,7 @@ TEST(LayerImages, AHoleWhoseOuterContourIsOpenIsNoBody) {
     add_contour(builder, {{0, 0}, {0, 10}, {10, 10}, {10, 0}});
     add_contour(builder, {{30, 0}, {34, 0}, {34, 5}}, false);
     const std::vector<Layer> apart{builder.finish(0, 0.5, 0, 1)};
-    EXPECT_EQ(images.image(apart).areas.covered, 10 * 10);
+    EXPECT_EQ(images.image(Plane(apart)).areas.covered, 10 * 10);
 }
 
 } // namespace

@@ -74,11 +74,11 @@ TEST(ResinWriter, RefusesRangesWhereThereIsOneExposure) {
 
 TEST(PrinterFor, SaysWhatIsMissing) {
     const auto text = [](const LayerWriteOptions& options) {
-        return test::error_of(ErrorKind::usage, [&] { static_cast<void>(printer_for(options, "goo")); });
+        return test::error_of(ErrorKind::usage, [&] { static_cast<void>(printer_for({}, options, "goo")); });
     };
     EXPECT_NE(text({}).find("give `printer`, or `pixels` and `display_mm`"), std::string::npos);
     EXPECT_NE(text({.image = {.pixel_mm = {{0.1, 0.1}}}}).find("`printer`"), std::string::npos);
-    EXPECT_TRUE(printer_for({.image = {.pixels = {{80, 40}}}}, "goo").mirror_x);
+    EXPECT_TRUE(printer_for({}, {.image = {.pixels = {{80, 40}}}}, "goo").mirror_x);
     const LayerWriteOptions other{.printer = &find_resin_printer("Mono X")};
     EXPECT_NE(
         text(other).find("the Anycubic Photon Mono X reads files of the format anycubic (.pwmx), not goo"),
@@ -86,8 +86,8 @@ TEST(PrinterFor, SaysWhatIsMissing) {
 }
 
 TEST(MachineName, IsWrittenAsTheMakerDoes) {
-    EXPECT_EQ(machine_name_of(tiny_printer), "ELEGOO Tiny");
-    EXPECT_EQ(machine_name_of(find_resin_printer("Mono X")), "Anycubic Photon Mono X");
+    EXPECT_EQ(machine_name_of({}, tiny_printer), "ELEGOO Tiny");
+    EXPECT_EQ(machine_name_of({}, find_resin_printer("Mono X")), "Anycubic Photon Mono X");
 }
 
 } // namespace

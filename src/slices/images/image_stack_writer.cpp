@@ -2,6 +2,7 @@
 #include "slices/engine/layer_writers.hpp"
 #include "slices/engine/ordered_writer.hpp"
 #include "slices/images/display.hpp"
+#include "slices/images/image_stack_format.hpp"
 #include "slices/images/layer_images.hpp"
 #include "system/atomic_directory.hpp"
 
@@ -20,10 +21,6 @@ namespace lamella {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr std::string_view manifest_name = "manifest.json";
-/// First bytes of the list. They identify a folder of images that may be replaced.
-constexpr std::string_view manifest_magic = "{\n  \"content\": \"layers as pictures, by Lamella\",\n";
 
 std::string image_name(std::uint64_t index) {
     return fmt::format("{:05}.png", index);
@@ -74,14 +71,17 @@ RasterOptions raster_of(const LayerWriteOptions& options) {
     return options.printer == nullptr ? options.image.raster : raster_for(options.image, *options.printer);
 }
 
+DisplayGrid display_of_options(const LayerFileInfo& info, const LayerWriteOptions& options) {
+    return display_grid(info, options.image, options.printer == nullptr ? ResinPrinter{} : *options.printer);
+}
+
 class ImageStackWriter final : public OrderedWriter {
   public:
     ImageStackWriter(const std::string& path, bool in_folder, const LayerFileInfo& info,
-                     const LayerWriteOptions& options)
+                     const LayerWriteOptions& options, const DisplayGrid& display)
         : OrderedWriter(info, {.open_chains = false, .supports = true}, Ascending::z_and_index),
-          display_(display_for(info.box, options.image,
-                               options.printer == nullptr ? ResinPrinter{} : *options.printer)),
-          images_(display_.grid(info.box), raster_of(options)), manifest_(display_, images_) {
+          display_(display.display), images_(PlaneDrawing(display.grid, raster_of(options), info.grid)),
+          manifest_(display_, images_) {
         if (in_folder)
             folder_.emplace(path, is_ours);
         else
@@ -92,7 +92,7 @@ class ImageStackWriter final : public OrderedWriter {
 
   private:
     Write formatted(const Plane& plane) override {
-        LayerImage image = images_.image(plane.polylines);
+        LayerImage image = images_.image(plane);
         // In a folder each layer has a file of its own, which can be written in any order.
         if (folder_)
             folder_->write(image_name(plane.polylines.front().index), image.file->view());
@@ -126,12 +126,12 @@ class ImageStackWriter final : public OrderedWriter {
 
 std::unique_ptr<LayerWriter> open_image_folder(const std::string& path, const LayerFileInfo& info,
                                                const LayerWriteOptions& options) {
-    return std::make_unique<ImageStackWriter>(path, true, info, options);
+    return std::make_unique<ImageStackWriter>(path, true, info, options, display_of_options(info, options));
 }
 
 std::unique_ptr<LayerWriter> open_image_archive(const std::string& path, const LayerFileInfo& info,
                                                 const LayerWriteOptions& options) {
-    return std::make_unique<ImageStackWriter>(path, false, info, options);
+    return std::make_unique<ImageStackWriter>(path, false, info, options, display_of_options(info, options));
 }
 
 } // namespace lamella

@@ -6,6 +6,7 @@
 
 #include "slices/engine/layer_writers.hpp"
 #include "slices/images/binary_fields.hpp"
+#include "slices/images/ctb_format.hpp"
 #include "slices/images/preview.hpp"
 #include "slices/images/resin_file.hpp"
 
@@ -28,7 +29,6 @@ constexpr std::uint64_t header_bytes = 112;
 constexpr std::uint64_t print_bytes = 60;
 constexpr std::uint64_t slicer_bytes = 76;
 constexpr std::uint64_t block4_bytes = 464;
-constexpr std::uint64_t entry_bytes = 36;
 constexpr std::uint64_t record_bytes = 84;
 
 struct ChituboxKind {
@@ -40,14 +40,14 @@ struct ChituboxKind {
 
 ChituboxKind ctb_kind(const ResinPrinter& printer) {
     const bool fourth = printer.version == 4;
-    return {fourth ? 0x12FD0106U : 0x12FD0086U, fourth ? 4U : 3U};
+    return {fourth ? ctb4_magic : ctb_magic, fourth ? 4U : 3U};
 }
 
 /// Returns the kind with as many sets as levels of anti-aliasing, but a power of two, into which the values
 /// of grey are divided, and at most 4: an empty image takes as much as its pixels, divided by 125.
 ChituboxKind cbddlp_kind(const RasterOptions& raster) {
     constexpr std::uint32_t most_sets = 4;
-    ChituboxKind kind{0x12FD0019, 2};
+    ChituboxKind kind{cbddlp_magic, 2};
     while (kind.sets < most_sets && 2 * kind.sets <= raster.antialias)
         kind.sets *= 2;
     return kind;
@@ -84,7 +84,7 @@ struct ChituboxPlaces {
             block4 = table;
             table = block4 + block4_bytes;
         }
-        end = table + entry_bytes * layers * kind.sets;
+        end = table + ctb_entry_bytes * layers * kind.sets;
     }
 };
 
@@ -97,7 +97,7 @@ class ChituboxWriter final : public ResinFile {
                      .own_exposures = true,
                      .stages = kind.version >= 4},
                     printer, codes_of(kind),
-                    ChituboxPlaces(kind, machine_name_of(printer).size(), info.layers).end),
+                    ChituboxPlaces(kind, machine_name_of(info, printer).size(), info.layers).end),
           kind_(kind), places_(kind, machine_name().size(), info.layers), tables_(kind.sets) {}
 
   private:
@@ -269,13 +269,13 @@ class ChituboxWriter final : public ResinFile {
 
 std::unique_ptr<LayerWriter> open_ctb(const std::string& path, const LayerFileInfo& info,
                                       const LayerWriteOptions& options) {
-    const ResinPrinter printer = printer_for(options, "ctb");
+    const ResinPrinter printer = printer_for(info, options, "ctb");
     return std::make_unique<ChituboxWriter>(path, info, options, ctb_kind(printer), printer);
 }
 
 std::unique_ptr<LayerWriter> open_cbddlp(const std::string& path, const LayerFileInfo& info,
                                          const LayerWriteOptions& options) {
-    const ResinPrinter printer = printer_for(options, "cbddlp");
+    const ResinPrinter printer = printer_for(info, options, "cbddlp");
     return std::make_unique<ChituboxWriter>(path, info, options,
                                             cbddlp_kind(raster_for(options.image, printer)), printer);
 }

@@ -55,9 +55,10 @@ std::string job_name(const std::string& path) {
 }
 
 /// Returns the printer of the options, or else the one that the format is named after.
-ResinPrinter sl1_printer(const LayerWriteOptions& options, std::string_view format) {
+ResinPrinter sl1_printer(const LayerFileInfo& info, const LayerWriteOptions& options,
+                         std::string_view format) {
     if (options.printer != nullptr)
-        return printer_for(options, format);
+        return printer_for(info, options, format);
     const std::span<const ResinPrinter> all = resin_printers();
     return *std::find_if(all.begin(), all.end(),
                          [&](const ResinPrinter& printer) { return printer.format == format; });
@@ -65,14 +66,24 @@ ResinPrinter sl1_printer(const LayerWriteOptions& options, std::string_view form
 
 constexpr std::string_view maker = "Original Prusa ";
 
+/// Returns the options with the number of bottom layers that the printers assume, if it is another one in a
+/// file that is converted.
+LayerWriteOptions with_first_layers(LayerWriteOptions options) {
+    if (options.resin_of_file)
+        options.resin.bottom_layers = first_layers;
+    return options;
+}
+
 class Sl1Writer final : public ResinArchive {
   public:
     Sl1Writer(const std::string& path, const LayerFileInfo& info, const LayerWriteOptions& options,
               std::string_view format)
-        : ResinArchive(path, info, options,
+        : ResinArchive(path, info, with_first_layers(options),
                        {.name = "an SL1 job", .own_heights = false, .own_exposures = false},
-                       sl1_printer(options, format)),
+                       sl1_printer(info, options, format)),
           job_(job_name(info.memory == nullptr ? path : "")) {
+        if (options.resin_of_file && options.resin.bottom_layers.value_or(first_layers) != first_layers)
+            leave_out(fmt::format("{} bottom layers", *options.resin.bottom_layers));
         if (plan().bottom_layers() != first_layers)
             throw Error(ErrorKind::usage,
                         fmt::format("an SL1 job has {} bottom layers, not {}: leave out their number",

@@ -145,7 +145,7 @@ class AnycubicWriter final : public ResinFile {
 
 std::unique_ptr<LayerWriter> open_anycubic(const std::string& path, const LayerFileInfo& info,
                                            const LayerWriteOptions& options) {
-    return std::make_unique<AnycubicWriter>(path, info, options, printer_for(options, "anycubic"));
+    return std::make_unique<AnycubicWriter>(path, info, options, printer_for(info, options, "anycubic"));
 }
 
 } // namespace lamella

@@ -5,6 +5,7 @@
 
 #include "slices/engine/layer_writers.hpp"
 #include "slices/images/binary_fields.hpp"
+#include "slices/images/goo_format.hpp"
 #include "slices/images/preview.hpp"
 #include "slices/images/resin_file.hpp"
 
@@ -17,18 +18,14 @@ namespace lamella {
 
 namespace {
 
-constexpr std::string_view goo_magic("\x07\0\0\0DLP\0", 8);
-constexpr std::string_view goo_delimiter = "\r\n";
-constexpr std::string_view goo_tail("\0\0\0\x07\0\0\0DLP\0", 11);
 constexpr std::uint32_t small_side = 116;
 constexpr std::uint32_t big_side = 290;
-constexpr std::uint64_t goo_head_bytes = 195477;
 
 class GooWriter final : public ResinFile {
   public:
     GooWriter(const std::string& path, const LayerFileInfo& info, const LayerWriteOptions& options)
-        : ResinFile(path, info, options, {.name = "a goo file"}, printer_for(options, "goo"), {goo_runs()},
-                    goo_head_bytes) {}
+        : ResinFile(path, info, options, {.name = "a goo file"}, printer_for(info, options, "goo"),
+                    {goo_runs()}, goo_head_bytes) {}
 
   private:
     /// Appends the waits, which are 0 if the printer uses the time without light.

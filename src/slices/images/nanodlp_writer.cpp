@@ -56,7 +56,7 @@ class NanoDlpWriter final : public ResinArchive {
     NanoDlpWriter(const std::string& path, const LayerFileInfo& info, const LayerWriteOptions& options)
         : ResinArchive(path, info, options,
                        {.name = "a NanoDLP file", .own_heights = false, .own_exposures = false},
-                       printer_for(options, "nanodlp")),
+                       printer_for(info, options, "nanodlp")),
           box_(info.box) {}
 
   private:
@@ -123,12 +123,13 @@ class NanoDlpWriter final : public ResinArchive {
 
     [[nodiscard]] std::string profile(const ResinTotals& totals) const {
         const ResinSettings& settings = plan().settings();
-        return fmt::format("{{\"ProfileID\": 1, \"Title\": {}, \"Depth\": {:.9g}, \"CureTime\": {:.9g}, "
-                           "\"SupportCureTime\": {:.9g}, \"SupportLayerNumber\": {}, "
-                           "\"TransitionalLayer\": {}, \"ResinPrice\": {:.9g}}}\n",
-                           json_quoted(printer().name), 1000 * totals.layer_mm, plan().exposure_s(),
-                           plan().bottom_exposure_s(), plan().bottom_layers(), plan().transition_layers(),
-                           settings.price_per_litre);
+        return fmt::format(
+            "{{\"ProfileID\": 1, \"Title\": {}, \"Depth\": {:.9g}, \"CureTime\": {:.9g}, "
+            "\"SupportCureTime\": {:.9g}, \"SupportLayerNumber\": {}, "
+            "\"TransitionalLayer\": {}, \"ResinPrice\": {:.9g}}}\n",
+            json_quoted(printer().name.empty() ? std::string_view(machine_name()) : printer().name),
+            1000 * totals.layer_mm, plan().exposure_s(), plan().bottom_exposure_s(), plan().bottom_layers(),
+            plan().transition_layers(), settings.price_per_litre);
     }
 
     Box3 box_;

@@ -23,7 +23,7 @@ class ChituboxZipWriter final : public ResinArchive {
   public:
     ChituboxZipWriter(const std::string& path, const LayerFileInfo& info, const LayerWriteOptions& options)
         : ResinArchive(path, info, options, {.name = "a Chitubox zip"},
-                       printer_for(options, "chitubox-zip")) {}
+                       printer_for(info, options, "chitubox-zip")) {}
 
   private:
     std::string image_name(const ResinLayer& layer) const override {
@@ -77,7 +77,7 @@ class ChituboxZipWriter final : public ResinArchive {
             text += fmt::format(";{}:{:.9g}\n", key, value);
         };
         add("fileName", "layers");
-        add("machineType", printer().name);
+        add("machineType", printer().name.empty() ? std::string_view(machine_name()) : printer().name);
         add("estimatedPrintTime", std::llround(totals.print_time_s));
         add_number("volume", totals.volume_ml);
         add("resin", "default");
