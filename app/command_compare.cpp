@@ -45,6 +45,8 @@ struct Differing {
 double size_of(const Differing& one) {
     if (!one.plane->first || !one.plane->second)
         return std::numeric_limits<double>::infinity();
+    if (one.details->other_pixels)
+        return static_cast<double>(*one.details->other_pixels);
     return std::max(
         {one.plane->difference.distance_mm, one.details->hatch_distance_mm, one.details->height_distance_mm});
 }
@@ -75,7 +77,10 @@ std::string difference_text(const Differing& one, const CompareArguments& argume
                            one_line(input_name(arguments.inputs[plane.first ? 0 : 1])),
                            details.first_hatches + details.second_hatches == 0 ? "contours" : "vectors");
     std::vector<std::string> texts;
-    if (!plane.difference.same)
+    if (details.other_pixels && *details.other_pixels > 0)
+        texts.push_back(fmt::format("{} by up to {} of 255", counted(*details.other_pixels, "pixel"),
+                                    details.largest_pixel_difference));
+    else if (!plane.difference.same)
         texts.push_back(contours_text(plane.difference));
     if (details.first_hatches != details.second_hatches)
         texts.push_back(fmt::format("{} against {}", counted(details.first_hatches, "hatch line"),
@@ -96,10 +101,15 @@ std::string difference_text(const Differing& one, const CompareArguments& argume
 }
 
 std::string exposures_text(const FileComparison& found, const CompareArguments& arguments) {
+    constexpr std::size_t most = 12;
     std::string text;
-    for (const ParameterDifference& one : found.parameters)
+    for (std::size_t i = 0; i < std::min(found.parameters.size(), most); ++i) {
+        const ParameterDifference& one = found.parameters[i];
         text += fmt::format("    {}: {} {} against {}\n", one_line(one.label), one.parameter,
                             brief(one.first), brief(one.second));
+    }
+    if (found.parameters.size() > most)
+        text += fmt::format("    and {} more\n", grouped(found.parameters.size() - most));
     const std::vector<std::string>* const only[] = {&found.only_first, &found.only_second};
     for (std::size_t i = 0; i < std::size(only); ++i)
         for (const std::string& label : *only[i])
@@ -116,21 +126,26 @@ Json plane_json(const Differing& one) {
     const bool both = plane.first && plane.second;
     const LayerDifference& found = plane.difference;
     const bool measured = both && std::isfinite(found.distance_mm);
-    return {{"z", plane.z},
-            {"in", both          ? "both"
-                   : plane.first ? "first"
-                                 : "second"},
-            {"distance_mm", measured ? Json(found.distance_mm) : Json()},
-            {"at", measured ? Json{found.where.x, found.where.y} : Json()},
-            {"contours", {found.first.contours, found.second.contours}},
-            {"open_chains", {found.first.open_chains, found.second.open_chains}},
-            {"area_mm2", {found.first.area_mm2, found.second.area_mm2}},
-            {"hatches", {details.first_hatches, details.second_hatches}},
-            {"hatch_distance_mm",
-             both && std::isfinite(details.hatch_distance_mm) ? Json(details.hatch_distance_mm) : Json()},
-            {"height_distance_mm", both ? Json(details.height_distance_mm) : Json()},
-            {"exposed_alike", both ? Json(details.exposed_alike) : Json()},
-            {"followed_alike", both ? Json(details.followed_alike) : Json()}};
+    Json json{{"z", plane.z},
+              {"in", both          ? "both"
+                     : plane.first ? "first"
+                                   : "second"},
+              {"distance_mm", measured ? Json(found.distance_mm) : Json()},
+              {"at", measured ? Json{found.where.x, found.where.y} : Json()},
+              {"contours", {found.first.contours, found.second.contours}},
+              {"open_chains", {found.first.open_chains, found.second.open_chains}},
+              {"area_mm2", {found.first.area_mm2, found.second.area_mm2}},
+              {"hatches", {details.first_hatches, details.second_hatches}},
+              {"hatch_distance_mm",
+               both && std::isfinite(details.hatch_distance_mm) ? Json(details.hatch_distance_mm) : Json()},
+              {"height_distance_mm", both ? Json(details.height_distance_mm) : Json()},
+              {"exposed_alike", both ? Json(details.exposed_alike) : Json()},
+              {"followed_alike", both ? Json(details.followed_alike) : Json()}};
+    if (details.other_pixels) {
+        json["other_pixels"] = *details.other_pixels;
+        json["largest_pixel_difference"] = details.largest_pixel_difference;
+    }
+    return json;
 }
 
 Json parameters_json(const std::vector<ParameterDifference>& parameters) {
@@ -283,7 +298,8 @@ Command compare_command() {
         .description =
             "Compares the layers of two slice files of any formats, plane by plane: the distance between "
             "their contours, areas and their centres, open contours, hatch lines one by one, heights, and "
-            "the parameters of exposures. Prints the first and the largest difference. Exit code 4: they do "
+            "the parameters of exposures; of jobs for resin printers, pixels and exposures. Prints the first "
+            "and the largest difference. Exit code 4: they do "
             "not agree within the tolerance.",
         .operands = {operand("FIRST", "a slice file; - is standard input"),
                      operand("SECOND", "the slice file to compare it with")},

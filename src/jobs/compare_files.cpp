@@ -9,6 +9,8 @@
 #include "core/executor.hpp"
 #include "polygon/compared_planes.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -16,8 +18,10 @@
 #include <deque>
 #include <limits>
 #include <map>
+#include <memory>
 #include <set>
 #include <span>
+#include <string>
 #include <string_view>
 #include <tuple>
 #include <utility>
@@ -188,22 +192,104 @@ StackPlanes planes_of(const LayerFile& file) {
     return planes;
 }
 
+/// Returns whether the images of both files have the same pixels on displays of the same kind.
+bool have_same_pixels(const LayerFile& first, const LayerFile& second) {
+    if (!first.grid || !second.grid)
+        return false;
+    const PixelGrid& one = *first.grid;
+    const PixelGrid& other = *second.grid;
+    const auto alike = [](double a, double b) {
+        return (a < 0) == (b < 0) && (a > 0) == (b > 0);
+    };
+    return one.width == other.width && one.height == other.height && alike(one.ux, other.ux) &&
+           alike(one.uy, other.uy) && alike(one.vx, other.vx) && alike(one.vy, other.vy);
+}
+
+/// Returns the absolute differences of the pixels of two images.
+std::shared_ptr<const RunImage> difference_of(const RunImage& one, const RunImage& other) {
+    RunImage difference{one.width, one.height, {}};
+    auto first = one.runs.begin();
+    auto second = other.runs.begin();
+    while (first != one.runs.end() && second != other.runs.end()) {
+        const std::uint64_t end = std::min(first->end, second->end);
+        const auto value = static_cast<std::uint8_t>(std::abs(int{first->value} - int{second->value}));
+        if (difference.runs.empty() || difference.runs.back().value != value)
+            difference.runs.push_back({end, value});
+        difference.runs.back().end = end;
+        first += first->end == end ? 1 : 0;
+        second += second->end == end ? 1 : 0;
+    }
+    return std::make_shared<const RunImage>(std::move(difference));
+}
+
+/// Puts the difference of two images into the details of a plane.
+void take_difference(const RunImage& difference, PlaneDetails& details) {
+    std::uint64_t from = 0;
+    std::uint64_t pixels = 0;
+    for (const ImageRun& run : difference.runs) {
+        pixels += run.value == 0 ? 0 : run.end - from;
+        details.largest_pixel_difference = std::max<unsigned>(details.largest_pixel_difference, run.value);
+        from = run.end;
+    }
+    details.other_pixels = pixels;
+}
+
+/// Compares the exposures of layers and the movements of the plate.
+void compare_jobs(const LayerFile& first, const LayerFile& second,
+                  std::vector<ParameterDifference>& differences) {
+    if (!first.resin || !second.resin)
+        return;
+    const std::vector<double>& ones = first.resin->exposures_s;
+    const std::vector<double>& others = second.resin->exposures_s;
+    constexpr double same_s = 1e-3; // some formats have milliseconds
+    for (std::size_t i = 0; i < std::min(ones.size(), others.size()); ++i)
+        if (std::abs(ones[i] - others[i]) > same_s)
+            differences.push_back({fmt::format("layer {}", i), "exposure_s", ones[i], others[i]});
+    if (first.format != second.format)
+        return;
+    const auto compare_travels = [&](const std::string& label, const PlateTravel& one,
+                                     const PlateTravel& its) {
+        for (const auto& [name, member] : {std::pair("lift_mm", &PlateTravel::lift_mm),
+                                           {"lift_mm_min", &PlateTravel::lift_mm_min},
+                                           {"lift2_mm", &PlateTravel::lift2_mm},
+                                           {"retract_mm_min", &PlateTravel::retract_mm_min},
+                                           {"retract2_mm", &PlateTravel::retract2_mm},
+                                           {"wait_before_lift_s", &PlateTravel::wait_before_lift_s},
+                                           {"wait_after_lift_s", &PlateTravel::wait_after_lift_s},
+                                           {"wait_after_retract_s", &PlateTravel::wait_after_retract_s}})
+            if (!is_same(one.*member, its.*member))
+                differences.push_back({label, name, one.*member, its.*member});
+    };
+    compare_travels("bottom layers", first.resin->settings.bottom_travel,
+                    second.resin->settings.bottom_travel);
+    compare_travels("other layers", first.resin->settings.travel, second.resin->settings.travel);
+}
+
 /// Returns a source of pairs of planes: each of its planes has the parts of the first file, then those of the
-/// second. On planes that a file lacks, its parts are empty.
+/// second. On planes that a file lacks, its parts are empty. If both files have images with the same pixels,
+/// the image of a pair is the difference of its images.
 PlaneSource pairs_of(const LayerFile& first, const LayerFile& second, std::span<const ComparedPlane> pairs) {
     PlaneSource both;
     for (const ComparedPlane& pair : pairs)
         both.planes.push_back(pair.first ? first.planes[*pair.first] : second.planes[*pair.second]);
     both.parts = first.parts;
     both.parts.insert(both.parts.end(), second.parts.begin(), second.parts.end());
+    const bool pixels = have_same_pixels(first, second);
+    if (pixels)
+        both.grid = first.grid;
     both.plane_bytes = first.plane_bytes + second.plane_bytes;
     both.spare_bytes = std::min(first.spare_bytes, second.spare_bytes);
-    both.make = [&first, &second, pairs](std::size_t i) {
+    both.make = [&first, &second, pairs, pixels](std::size_t i) {
         const auto plane_of = [](const LayerFile& file, std::optional<std::size_t> position) {
             return position ? file.make(*position) : Plane(std::vector<Layer>(file.parts.size()));
         };
         Plane plane = plane_of(first, pairs[i].first);
-        plane.append(plane_of(second, pairs[i].second));
+        const std::shared_ptr<const RunImage> image = plane.image;
+        Plane other = plane_of(second, pairs[i].second);
+        const std::shared_ptr<const RunImage> other_image = other.image;
+        plane.append(std::move(other));
+        if (pixels && image && other_image)
+            plane.image = difference_of(*image, *other_image);
         return plane;
     };
     return both;
@@ -240,7 +326,13 @@ class PairComparer {
         const std::span<const Layer> lines(both.polylines);
         const Layer one = united(lines.first(first_.parts.size()));
         const Layer other = united(lines.subspan(first_.parts.size()));
-        compare_layers(plane, one, other, tolerance_.contours);
+        if (both.image)
+            take_difference(*both.image, details);
+        // Equal pixels may have outlines elsewhere: some formats do not say where the part was.
+        const bool same_pixels = details.other_pixels && *details.other_pixels == 0;
+        compare_layers(plane, one, same_pixels ? one : other, tolerance_.contours);
+        if (details.other_pixels && !same_pixels)
+            plane.agree = plane.difference.same = false;
         if (area_difference_ && !plane.difference.same)
             details.area_difference_mm2 =
                 measure(combine(one, other, BooleanOperation::exclude, limits_)).area_mm2;
@@ -337,6 +429,7 @@ FileComparison compare_files(const LayerFile& first, const LayerFile& second,
     check_tolerance(options.tolerance_mm);
     FileComparison result{.layers = {}, .details = {}, .parameters = {}, .only_first = {}, .only_second = {}};
     std::vector<PartPair> exposures = compare_exposures(first, second, result);
+    compare_jobs(first, second, result.parameters);
     const MovedPoints tolerance = tolerance_of(first, second, options.tolerance_mm);
     const StackPlanes planes[2] = {planes_of(first), planes_of(second)};
     result.layers.tolerance_mm = std::max(tolerance.contours, tolerance.hatches);

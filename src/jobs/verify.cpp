@@ -7,6 +7,7 @@
 #include "contour/area_moments.hpp"
 #include "contour/same_height.hpp"
 #include "core/executor.hpp"
+#include "jobs/image_check.hpp"
 #include "jobs/layer_check.hpp"
 #include "jobs/layer_heights.hpp"
 #include "jobs/moved_cuts.hpp"
@@ -97,7 +98,31 @@ OwnArea own_area(const Layer& layer, const LayerMeasure& measure, const AreaFram
 /// The findings in a layer, of which only the heights are needed afterwards.
 struct CheckedLayer : LayerCheck {
     OwnArea own = {};
+    LayerShape shape = {}; ///< if the layers are images
 };
+
+/// Compares layers that are images. Their heights count from the plate, where the mesh is put.
+void compare_with_images(const PlaneSource& source, std::span<const CheckedLayer> checks,
+                         const VerifyOptions& options, const Execution& execution, Verification& result) {
+    LayerStack planes = source.planes;
+    const double plate = bounding_box(*options.mesh, execution).min.z - planes.front().bottom;
+    for (Layer& plane : planes) {
+        plane.z += plate;
+        plane.bottom += plate;
+        plane.top += plate;
+    }
+    const Plan plan = plan_of(planes, options.rule, options.snap_mm);
+    const LayerStack made = layers_of(options, plan, steps_to_repeat(options.steps), execution);
+    std::vector<LayerShape> sections(made.size());
+    std::transform(made.begin(), made.end(), sections.begin(), shape_of);
+    std::vector<LayerShape> images(checks.size());
+    std::transform(checks.begin(), checks.end(), images.begin(),
+                   [](const CheckedLayer& check) { return check.shape; });
+    const ImageAgreement found = compare_images(images, sections, planes, *source.grid);
+    result.findings.add(found.findings);
+    result.max_area_error_mm2 = found.max_area_error_mm2;
+    result.heights = covered_heights(planes, *options.mesh, options.granted(), execution, result.findings);
+}
 
 void compare_areas(std::span<const Layer> layers, std::span<const CheckedLayer> checks, const Point2& origin,
                    const VerifyOptions& options, const Execution& execution, Verification& result) {
@@ -219,7 +244,9 @@ Verification verify(const PlaneSource& source, const VerifyOptions& options, con
     const PlaneVisitor check_plane = [&](std::size_t i, Plane plane, unsigned) {
         const Layer layer = plane.parts() == 1 ? std::move(plane.polylines.front()) : merged(plane.polylines);
         checks[i] = {check_layer(layer, options.granted(), limits)};
-        if (options.mesh)
+        if (options.mesh && source.grid)
+            checks[i].shape = shape_of(layer);
+        else if (options.mesh)
             checks[i].own = own_area(layer, checks[i].measure, frame, options);
     };
     source.visit(Stage::polygon, check_plane, execution);
@@ -240,7 +267,9 @@ Verification verify(const PlaneSource& source, const VerifyOptions& options, con
     add_height_overlaps(result.findings, layers, options.granted());
     if (const std::uint64_t lines = source.hatch_lines(); lines > 0)
         result.findings.add({.kind = FindingKind::unchecked_hatch_lines, .count = lines});
-    if (options.mesh) {
+    if (options.mesh && source.grid && !layers.empty()) {
+        compare_with_images(source, checks, options, execution, result);
+    } else if (options.mesh) {
         compare_areas(layers, checks, frame.origin, options, execution, result);
         const Plan plan = plan_of(layers, options.rule, options.snap_mm);
         result.findings.add(near_faces(*options.mesh, plan, execution));

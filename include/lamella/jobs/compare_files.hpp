@@ -27,6 +27,10 @@ struct PlaneDetails {
     bool heights_agree = true;
     bool exposed_alike = true;  ///< false if contours agree only in total, not exposure by exposure
     bool followed_alike = true; ///< false if they agree, but in another order or from other first points
+    /// If both planes have images with the same pixels: the number of pixels that differ, and the largest
+    /// difference of their values, which are 0 to 255. Contours are then compared only if pixels differ.
+    std::optional<std::uint64_t> other_pixels = {};
+    unsigned largest_pixel_difference = 0;
     /// Area of the symmetric difference of the contours, if asked for.
     double area_difference_mm2 = 0;
     bool same = false; ///< all of this and the contours are equal, bit for bit
@@ -34,7 +38,7 @@ struct PlaneDetails {
 
 /// A parameter that differs between exposures of parts with the same label.
 struct ParameterDifference {
-    std::string label;
+    std::string label;     ///< of the part; of jobs for resin printers, "job" or the layer
     std::string parameter; ///< such as "power_w"
     double first = 0;
     double second = 0;
@@ -79,6 +83,9 @@ struct FileComparisonOptions {
 ///   difference. Between formats a parameter that only one file has is not a difference, because some formats
 ///   cannot store it.
 /// - Between files of one format, an unmatched exposure is a difference.
+/// - If both files have images with the same pixels, planes agree if all of these are equal.
+/// - Of two jobs for resin printers, the exposures of layers are compared and, between files of one format,
+///   the movements of the plate.
 ///
 /// Expected O(n log n) for n points and ends of lines of both files, parallel over planes. Takes memory for
 /// the contours of a plane for each thread, also if the layers of a file are not in memory. Throws
