@@ -6,6 +6,7 @@
 #include "fixtures/random_layers.hpp"
 #include "fixtures/rounds.hpp"
 #include "slices/common_layer_files.hpp"
+#include "slices/images/resin_jobs.hpp"
 #include "slices/svg_files.hpp"
 
 #include <gtest/gtest.h>
@@ -61,6 +62,10 @@ std::vector<LayerPart> exposed(const std::vector<LayerPart>& parts) {
 constexpr std::string_view formats[] = {"cli",  "cli-ascii", "svg", "slc", "3mf",
                                         "json", "npz",       "ilt", "ovf", "3mf-toolpath"};
 
+/// Those of images, whose files the printer's previews make large.
+constexpr std::string_view image_formats[] = {"png-zip", "sl1",      "goo",          "ctb",
+                                              "cbddlp",  "anycubic", "chitubox-zip", "nanodlp"};
+
 /// Small files, all of whose bytes a test can change.
 std::vector<LayerSample> small_samples() {
     std::vector<LayerSample> samples;
@@ -71,6 +76,12 @@ std::vector<LayerSample> small_samples() {
     for (const std::string_view format : {"ilt", "ovf", "3mf-toolpath"})
         samples.push_back({std::string(format) + " of scan vectors", [format] {
                                return test::layer_bytes(format, exposed(test::random_parts(11, 2, 4)));
+                           }});
+    for (const std::string_view format : image_formats)
+        samples.push_back({std::string(format), [format] {
+                               ResinPrinter printer = tiny_printer;
+                               printer.bottom_layers = 3; // as all formats can have them
+                               return job_of(format, squares(4), {.printer = &printer});
                            }});
     using namespace common_layer_reading;
     samples.push_back({"cli-ascii by hand", [] {
@@ -134,7 +145,7 @@ TEST_P(HostileLayers, AreReadWhole) {
 TEST_P(HostileLayers, ThatAreTruncatedAreErrorsOrHaveLess) {
     const std::string bytes = GetParam().bytes();
     const std::size_t whole = planes_of(expect_harmless(bytes));
-    const std::size_t step = bytes.size() > 8000 ? 7 : 1;
+    const std::size_t step = std::max<std::size_t>(bytes.size() > 8000 ? 7 : 1, bytes.size() / 2000);
     for (std::size_t size = 1; size < bytes.size() && !HasFailure(); size += step * test::slowness)
         EXPECT_LE(planes_of(expect_harmless(std::string_view(bytes).substr(0, size))), whole + 1);
 }
@@ -151,6 +162,25 @@ TEST_P(HostileLayers, WithChangedBytesAreErrorsOrOtherLayers) {
             changed[from + random() % (changed.size() - from)] =
                 static_cast<char>(random() % 4 == 0 ? 0xFF : random());
         static_cast<void>(expect_harmless(changed));
+    }
+}
+
+TEST(HostileImages, AreTheSameForAnyNumberOfThreads) {
+    for (const std::string_view format : image_formats) {
+        ResinPrinter printer = tiny_printer;
+        printer.height_mm = 0;
+        printer.bottom_layers = 3;
+        const std::string sound = job_of(format, squares(60), {.printer = &printer});
+        test::expect_same_layers(sound);
+        std::mt19937_64 random(5);
+        for (int round = 0; round < test::rounds_within_reason(40); ++round) {
+            std::string bytes = sound;
+            const std::size_t from =
+                round % 2 == 0 ? 0 : bytes.size() - std::min<std::size_t>(bytes.size(), 9000);
+            for (std::uint64_t n = random() % 3 + 1; n > 0; --n)
+                bytes[from + random() % (bytes.size() - from)] = static_cast<char>(random());
+            EXPECT_TRUE(same_outcome(layer_outcome(bytes, {}, 3), layer_outcome(bytes))) << format;
+        }
     }
 }
 
