@@ -18,16 +18,23 @@ namespace lamella {
 
 namespace {
 
-/// A way to mirror shapes.
+/// A way to mirror or rotate shapes: x and y are exchanged if `swap` is set, and then multiplied by these
+/// signs.
 struct Mirroring {
+    bool swap;
     double x;
     double y;
     const char* name;
 };
 
-constexpr std::array mirrorings{Mirroring{1, 1, ""}, Mirroring{-1, 1, "mirrored along x"},
-                                Mirroring{1, -1, "mirrored along y"},
-                                Mirroring{-1, -1, "rotated by half a turn"}};
+constexpr std::array mirrorings{Mirroring{false, 1, 1, ""},
+                                Mirroring{false, -1, 1, "mirrored along x"},
+                                Mirroring{false, 1, -1, "mirrored along y"},
+                                Mirroring{false, -1, -1, "rotated by half a turn"},
+                                Mirroring{true, -1, 1, "rotated by a quarter turn to the left"},
+                                Mirroring{true, 1, -1, "rotated by a quarter turn to the right"},
+                                Mirroring{true, 1, 1, "with x and y exchanged"},
+                                Mirroring{true, -1, -1, "with x and y exchanged and both mirrored"}};
 
 /// Returns the centroid of all layers together.
 Point2 middle_of(std::span<const LayerShape> shapes) {
@@ -39,11 +46,14 @@ Point2 middle_of(std::span<const LayerShape> shapes) {
 
 LayerShape mirrored(const LayerShape& shape, const Mirroring& by) {
     LayerShape other = shape;
-    other.moments.x_mm3 *= by.x;
-    other.moments.y_mm3 *= by.y;
+    const auto moved = [&](double x, double y) {
+        return by.swap ? Point2{by.x * y, by.y * x} : Point2{by.x * x, by.y * y};
+    };
+    const Point2 moments = moved(shape.moments.x_mm3, shape.moments.y_mm3);
+    other.moments.x_mm3 = moments.x;
+    other.moments.y_mm3 = moments.y;
     if (shape.box)
-        other.box = Box2::of({by.x * shape.box->x0, by.y * shape.box->y0},
-                             {by.x * shape.box->x1, by.y * shape.box->y1});
+        other.box = Box2::of(moved(shape.box->x0, shape.box->y0), moved(shape.box->x1, shape.box->y1));
     return other;
 }
 

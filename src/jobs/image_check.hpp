@@ -33,8 +33,8 @@ struct ImageAgreement {
 
 /// Compares the shapes of images with those of the sections of a mesh at the same heights. The part may be
 /// elsewhere on the display than in the mesh, which `moved_images` reports, but at the same place in all
-/// layers; and a boundary may be off by a pixel. If the shapes agree only after mirroring, `mirrored_images`
-/// says so, and nothing else is reported.
+/// layers; and a boundary may be off by a pixel. If the shapes agree only after mirroring or rotation
+/// by quarter turns, `mirrored_images` says so.
 [[nodiscard]] ImageAgreement compare_images(std::span<const LayerShape> images,
                                             std::span<const LayerShape> sections,
                                             std::span<const Layer> planes, const PixelGrid& grid);

@@ -83,6 +83,19 @@ TEST(ImageCheck, NamesMirroredParts) {
               "the images show the part of the mesh rotated by half a turn");
 }
 
+TEST(ImageCheck, NamesRotations) {
+    const std::vector<LayerShape> shapes{{{20, 30, 50}, 18, Box2{0, 0, 4, 5}},
+                                         {{12, 15, 20}, 16, Box2{0, 0, 4, 4}}};
+    // A rotation to the left takes (x, y) to (-y, x).
+    const std::vector<LayerShape> rotated{{{20, -50, 30}, 18, Box2{-5, 0, 0, 4}},
+                                          {{12, -20, 15}, 16, Box2{-4, 0, 0, 4}}};
+    const PixelGrid grid{.ux = 20, .vy = 20};
+    const std::vector<Layer> planes(2);
+    EXPECT_EQ(compare_images(rotated, shapes, planes, grid).findings.texts().front(),
+              "the images show the part of the mesh rotated by a quarter turn to the left");
+    EXPECT_TRUE(compare_images(shapes, shapes, planes, grid).findings.empty());
+}
+
 TEST(ImageCheck, FindsOtherParts) {
     const LayerFile file = read(goo_of(wedge(), {}));
     const Verification found = verified(file, test::box_mesh({0, 0, 5}, {9, 5, 7}));
