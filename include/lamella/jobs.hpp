@@ -13,7 +13,7 @@
 
 #include "lamella/formats.hpp"
 
-// Plates of parts; slice or scan files, join shards, verify and compare.
+// Plates of parts; slice or scan files, join shards, verify and compare; arrays of voxels.
 #include "lamella/jobs/compare_files.hpp"
 #include "lamella/jobs/layer_files.hpp"
 #include "lamella/jobs/layer_findings.hpp"
@@ -24,3 +24,4 @@
 #include "lamella/jobs/scan_layers.hpp"
 #include "lamella/jobs/slice_file.hpp"
 #include "lamella/jobs/verify.hpp"
+#include "lamella/jobs/voxels.hpp"
