@@ -29,6 +29,7 @@ def returned(text):
     """Returns a type of C++ in words of Python, as pybind11 has it in docstrings."""
     text = re.sub(r"\[\d+\]", "", text.replace("lamella::", "").replace("lamella.", ""))  # lengths of arrays
     text = re.sub(r"numpy\.ndarray\[(?:numpy\.)?(\w+)\]", lambda item: f"npt.NDArray[np.{item[1].replace('bool', 'bool_')}]", text)
+    text = re.sub(r"numpy\.ndarray(?!\[)", "npt.NDArray[Any]", text)  # of any numbers
     for plain, full in (("dict", "Dict[str, Any]"), ("list", "List[Any]"), ("tuple", "Tuple[Any, ...]"), ("object", "Any")):
         text = re.sub(rf"\b{plain}\b", full, text)
     return text
@@ -168,11 +169,12 @@ def stub(folder):
         "import numpy as np", "import numpy.typing as npt", "",
     ]  # fmt: skip
     local = words - set(typing.__all__) - set(vars(module))
-    for source in ("_arguments", "_methods"):
+    for source in ("_arguments", "_pixels", "_methods"):
         names = vars(importlib.import_module(f"lamella.{source}"))
         found = sorted(word for word in local if word in names and word[0].isupper())
         if found:
             head.append(f"from .{source} import {', '.join(found)}")
+            local -= set(found)
     return "\n".join([*head, *lines]) + "\n"
 
 

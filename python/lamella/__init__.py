@@ -44,11 +44,13 @@ from ._lamella import (
 )
 from ._meshes import DefectPlaces, Inspection, Intersection, SelfIntersections, inspect, mend, read_mesh
 from ._methods import ContourDefect
+from ._pixels import Voxels
 from ._plates import Part
 from ._printing import PrintCavity, PrintCheck, PrintIsland
 from ._scanning import PyslmLayer, ScanLayer, ScanStream, scan, to_pyslm
 from ._sections import Section, Slicer
 from ._slicing import Engine, engines, iter_layers, slice
+from ._voxels import voxels
 
 __all__ = [
     "CancelledError",
@@ -91,6 +93,7 @@ __all__ = [
     "UsageError",
     "VectorVerification",
     "Verification",
+    "Voxels",
     "__version__",
     "compare",
     "convert",
@@ -108,5 +111,6 @@ __all__ = [
     "to_pyslm",
     "verify",
     "verify_vectors",
+    "voxels",
     "write",
 ]

@@ -102,6 +102,11 @@ def is_array_of_one(value: Any) -> bool:
     return isinstance(value, np.ndarray) and value.ndim == 0 and not has_masked_entries(value)
 
 
+def is_number(value: Any) -> bool:
+    """Returns whether a value is meant as one number."""
+    return isinstance(value, (numbers.Real, decimal.Decimal)) or is_array_of_one(value)
+
+
 def number(
     name: str, value: Any, *, above: float = -math.inf, least: float = -math.inf, expected: str = "a finite number"
 ) -> float:
@@ -409,7 +414,7 @@ def coordinates(name: str, value: Any) -> Tuple[float, ...]:
 
 def lengths(name: str, value: Any) -> Tuple[float, float]:
     """Returns two lengths, along x and y. One length counts for both."""
-    if isinstance(value, (numbers.Real, decimal.Decimal)) or is_array_of_one(value):
+    if is_number(value):
         return (positive(name, value),) * 2
     return pair(name, value, "one length, or two (x, y)", positive)
 

@@ -3,9 +3,7 @@ this module and all that it imports do without the extension."""
 
 from __future__ import annotations
 
-import decimal
 import functools
-import numbers
 import os
 import tempfile
 import webbrowser
@@ -18,6 +16,7 @@ import numpy.typing as npt
 from . import _arguments as check
 from ._errors import InputError, UsageError
 from ._looking import layer_svg, plot_layer, stack_html
+from ._pixels import Centre, PixelType, RowsAndColumns, Voxels, cells_of, distance_of
 from ._printing import PrintCavity, PrintCheck, PrintIsland
 from ._shapely import contours_of, multi_polygon
 from ._warning import parts_lost, warn
@@ -186,7 +185,7 @@ class Layer(_Layer):
         arc_tolerance: largest distance of the chords of round corners from their arc, in millimetres.
         """
         way = (corners, mitre_limit, arc_tolerance)
-        if isinstance(distance, (numbers.Real, decimal.Decimal)) or check.is_array_of_one(distance):
+        if check.is_number(distance):
             return _made_of(self._offsets([check.number("distance", distance)], *way)[0], self)
         several = check.several("distance", distance, None, "a number or several", check.number)
         return [_made_of(made, self) for made in self._offsets(several, *way)]
@@ -293,6 +292,41 @@ class Stack(_Stack):
         if isinstance(index, list) or getattr(index, "ndim", 0) > 0:
             return self._chosen(_positions(index, len(self)))
         return self._item(index)
+
+    def pixels(
+        self,
+        pixel_size: check.Lengths,
+        *,
+        dtype: PixelType = "uint8",
+        origin: Optional[Centre] = None,
+        shape: Optional[RowsAndColumns] = None,
+        max_memory: int = 0,
+        threads: check.Threads = 0,
+        progress: Optional[check.Progress] = None,
+    ) -> Voxels:
+        """Returns the material of all layers as an array (layers, rows, columns). Unlike those of `Layer.image`, rows
+        ascend in y, as images of ITK have them: `array[k, j, i]` is at x and y of `origin` + (i, j) `pixel_size`.
+
+        pixel_size: the size of a pixel in millimetres, or two numbers, along x and y.
+        dtype: numpy.uint8 for 255 times the fraction of the pixel that is material, rounded; bool for whether its centre
+            is. Several parts count once. Open chains are ignored.
+        origin: x and y of the centre of the first pixel; by default its corner is at the smallest x and y of `bounds`.
+        shape: (rows, columns); by default they reach to the largest x and y of `bounds`, or beyond.
+        max_memory: largest number of bytes that the array may take; otherwise a LimitError is raised. 0 means three
+            quarters of the memory of the machine.
+        threads: number of threads; 0 means one for each processor. The result is the same for any number.
+        progress: called as progress(stage, done, total) from time to time, on the calling thread.
+
+        Raises UsageError, also for more than 65,535 rows or columns, and LimitError.
+        """
+        width, height = pixel_size  # type: ignore[misc]
+        (x, y), count = cells_of("pixel_size", self.bounds[:, :2], (width, height), origin, shape)
+        inside = np.dtype(dtype) == np.bool_
+        middles = (self.bottom + self.top) / 2
+        grid = (len(middles), *count), (x, y, 0.0), (width, height, 1.0)
+        array = self._pixels(*grid, inside, max_memory, threads, progress)
+        z = float(middles[0]) if len(middles) else 0.0
+        return Voxels(array, (x, y, z), (width, height, distance_of(middles, self.top - self.bottom)))
 
     def at(self, z: float) -> _Layer:
         """Returns the layer whose material is at the height `z` in millimetres; where one layer ends and the next one

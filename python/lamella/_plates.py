@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import decimal
-import numbers
 from dataclasses import dataclass
 from functools import partial
 from typing import Annotated, Any, List, Literal, Optional, Sequence, Tuple, Union
@@ -19,7 +17,7 @@ from ._meshes import UPWARDS, Mending, MeshLike, Placing, as_mesh, placed
 
 
 def _scale(name: str, value: Any) -> Tuple[float, ...]:
-    if isinstance(value, (numbers.Real, decimal.Decimal)) or check.is_array_of_one(value):
+    if check.is_number(value):
         value = (value,) * 3
     return check.several(name, value, 3, "a number, or three (x, y, z)", check.positive)
 

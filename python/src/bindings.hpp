@@ -24,6 +24,10 @@ void bind_layers(pybind11::module_& module);
 void bind_operations(pybind11::class_<SharedLayer, LayerPointer>& cls);
 /// Binds the class Stack.
 void bind_stacks(pybind11::module_& module);
+/// Binds the pixels of all layers of a stack.
+void bind_pixels(pybind11::class_<Stack, StackPointer>& cls);
+/// Binds functions that make arrays of voxels of a plate.
+void bind_voxels(pybind11::module_& module);
 /// Binds plans, slicing into a stack, the class LayerStream, and the engines.
 void bind_slicing(pybind11::module_& module);
 /// Binds the class PreparedMesh, which cuts single planes.

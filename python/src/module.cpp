@@ -18,6 +18,7 @@ PYBIND11_MODULE(_lamella, module) {
     lamella::python::bind_plates(module);
     lamella::python::bind_layers(module);
     lamella::python::bind_stacks(module);
+    lamella::python::bind_voxels(module);
     lamella::python::bind_slicing(module);
     lamella::python::bind_sections(module);
     lamella::python::bind_strategies(module);

@@ -133,6 +133,14 @@ PlatePointer plate_of_parts(const std::vector<Part>& parts, const std::optional<
 void bind_plates(py::module_& module) {
     py::class_<SourcePlate, PlatePointer>(module, "Plate")
         .def_property_readonly("bottom", [](const SourcePlate& self) { return self.placed.box.min.z; })
+        .def_property_readonly("bounds", [](const SourcePlate& self) { return bounds_of(self.placed.box); })
+        .def_property_readonly("labels",
+                               [](const SourcePlate& self) {
+                                   std::vector<py::str> labels;
+                                   for (const PlatePart& part : self.placed.parts)
+                                       labels.push_back(path_text(part.label));
+                                   return labels;
+                               })
         .def_property_readonly("names", [](const SourcePlate& self) {
             std::vector<py::str> names;
             for (const PlateFile& file : self.placed.files)

@@ -295,6 +295,7 @@ void bind_stacks(py::module_& module) {
             py::is_operator())
         .def("__repr__", &stack_text);
     bind_pickle(cls, "stack of layers", 15, &pickled, &unpickled);
+    bind_pixels(cls);
     complete(cls, "_methods");
 }
 

@@ -95,6 +95,8 @@ CALLS = {
     "Slicer.section of any plane": (lamella.Slicer(box_arrays()).section, {"origin": (1, 1, 1), "normal": (1, 1, 0)}),
     "Layer.diagnose": (stack()[0].diagnose, {}),
     "Layer.image": (stack()[0].image, {"pixel_mm": 1}),
+    "voxels": (lamella.voxels, {"meshes": box_arrays(), "spacing": 5}),
+    "Stack.pixels": (stack().pixels, {"pixel_size": 5}),
     "Stack.at": (stack().at, {"z": 1}),
     "Stack.check": (stack().check, {}),
     "Layer.from_shapely": (lamella.Layer.from_shapely, {"geometry": Square(), "z": 1}),

@@ -1,11 +1,15 @@
 """The samples of the documentation run as they stand."""
 
 import contextlib
+import importlib.util
 import io
 import re
 import runpy
 import shutil
+import sys
+import types
 
+import numpy as np
 import pytest
 from conftest import ROOT, samples
 
@@ -29,6 +33,50 @@ def test_the_readme_shows_the_example(folder):
     assert lamella.verify("part.cli", "part.stl").ok
 
 
+class ImageOfItk:
+    """What the samples need of SimpleITK.Image. Its wrapper takes sequences of numbers of these lengths and no others."""
+
+    def __init__(self, array):
+        assert array.ndim == 3 and array.flags.c_contiguous
+        self.array, self.given = array, {}
+
+    def GetSize(self):  # noqa: N802
+        return self.array.shape[::-1]
+
+    def __getattr__(self, name):
+        action, field = name[:3], name[3:]
+        if action == "Get":
+            return lambda: self.given[field]
+        length = {"Origin": 3, "Spacing": 3, "Direction": 9}[field]
+
+        def assign(numbers):
+            assert action == "Set" and len(numbers) == length and all(type(number) is float for number in numbers)
+            self.given[field] = tuple(numbers)
+
+        return assign
+
+
+def write_image_of_itk(image, path):
+    assert set(image.given) == {"Origin", "Spacing", "Direction"}
+
+
+def write_tiff(path, data, *, imagej, resolution, metadata):
+    """The same for tifffile.imwrite. Files of ImageJ have no bool, and axes for each dimension."""
+    assert imagej and data.dtype == np.uint8 and len(metadata["axes"]) == data.ndim and len(resolution) == 2
+
+
+@pytest.fixture
+def stand_ins(monkeypatch):
+    """Modules in place of the packages that are not installed."""
+    for name, functions in (
+        ("SimpleITK", {"GetImageFromArray": ImageOfItk, "WriteImage": write_image_of_itk}),
+        ("tifffile", {"imwrite": write_tiff}),
+    ):
+        if importlib.util.find_spec(name) is None:
+            monkeypatch.setitem(sys.modules, name, types.SimpleNamespace(**functions))
+
+
+@pytest.mark.usefixtures("stand_ins")
 def test_the_samples_of_the_page_run(folder, capsys):
     shown = samples("docs/python.md")
     assert len(shown) >= 10
