@@ -133,7 +133,7 @@ Command check_command() {
     checking.options.push_back(output_file(
         "stats", "write the areas of every layer as JSON, too; - is standard output", arguments->stats));
     checking.options.push_back(
-        flag("strict", "end with exit code 4 if there is an island, a cup, a trap or an empty layer",
+        flag("strict", "end with exit code 4 if there is an island, a cup, a trap, an empty layer or an open contour",
              arguments->strict));
     checking.options.push_back(flag("json", "print JSON", arguments->json));
     return {

@@ -6,6 +6,7 @@
 #include <fast_float/fast_float.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <limits>
@@ -225,6 +226,17 @@ std::string grouped(std::uint64_t value) {
 
 std::string counted(std::uint64_t n, std::string_view noun) {
     return fmt::format("{} {}{}", grouped(n), noun, n == 1 ? "" : "s");
+}
+
+std::string duration(double seconds) {
+    constexpr double minute = 60;
+    constexpr double longest = 1e15; // also for files that have any number
+    if (!(seconds >= minute))
+        return fmt::format("{:.1f} s", seconds);
+    const auto whole = static_cast<std::uint64_t>(std::llround(std::min(seconds, longest)));
+    const std::uint64_t minutes = whole / 60;
+    return minutes < 60 ? fmt::format("{} min {:02} s", minutes, whole % 60)
+                        : fmt::format("{} h {:02} min", minutes / 60, minutes % 60);
 }
 
 std::string byte_size(std::uint64_t bytes) {

@@ -42,6 +42,8 @@ namespace lamella::app {
 [[nodiscard]] std::string grouped(std::uint64_t value);
 /// Returns "1 layer", "2 layers".
 [[nodiscard]] std::string counted(std::uint64_t n, std::string_view noun);
+/// Returns "8.3 s", "12 min 05 s", "3 h 07 min".
+[[nodiscard]] std::string duration(double seconds);
 /// Returns "6.2 MB".
 [[nodiscard]] std::string byte_size(std::uint64_t bytes);
 

@@ -16,11 +16,6 @@
 namespace lamella::app {
 namespace {
 
-std::string time_text(double seconds) {
-    const auto all = static_cast<std::uint64_t>(std::llround(std::clamp(seconds, 0.0, 1e9)));
-    return fmt::format("{} h {:02} min {:02} s", all / 3600, all / 60 % 60, all % 60);
-}
-
 /// Returns "0.05 mm", or the least and the greatest of several heights.
 std::string heights_text(double least, double greatest) {
     const std::string first = fmt::format("{:.4g}", least);
@@ -83,7 +78,7 @@ Figures resin_figures(const LayerFile& file) {
     add_known(figures, "price", job.price, "price",
               fmt::format("{:.4g} {}", job.price,
                           one_line(job.settings.currency.substr(0, job.settings.currency.find('/')))));
-    add_known(figures, "print_seconds", job.time_s, "print time", time_text(job.time_s));
+    add_known(figures, "print_seconds", job.time_s, "print time", duration(job.time_s));
     return figures;
 }
 

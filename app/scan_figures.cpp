@@ -54,16 +54,6 @@ std::string length_text(double mm) {
                             : fmt::format("{:.1f} km", mm / kilometre);
 }
 
-std::string time_text(double seconds) {
-    constexpr double minute = 60;
-    if (seconds < minute)
-        return fmt::format("{:.1f} s", seconds);
-    const auto whole = static_cast<std::uint64_t>(std::llround(seconds));
-    const std::uint64_t minutes = whole / 60;
-    return minutes < 60 ? fmt::format("{} min {:02} s", minutes, whole % 60)
-                        : fmt::format("{} h {:02} min", minutes / 60, minutes % 60);
-}
-
 std::string energy_text(double joules) {
     constexpr double kilo = 1e3;
     constexpr double mega = 1e6;
@@ -87,7 +77,7 @@ Figures scan_figures(std::span<const ExposureResult> exposures) {
             {"hatch_vectors", sums.hatch_vectors, "in hatches", counted(sums.hatch_vectors, "vector")},
             {"marked_mm", sums.all.marked_mm, "marked", length_text(sums.all.marked_mm)},
             {"jumped_mm", sums.all.jumped_mm, "jumped", length_text(sums.all.jumped_mm)},
-            {"build_seconds", sums.all.build_seconds, "beam time", time_text(sums.all.build_seconds)},
+            {"build_seconds", sums.all.build_seconds, "beam time", duration(sums.all.build_seconds)},
             {"energy_j", sums.all.energy_j, "energy", energy_text(sums.all.energy_j)},
             {"unreached_mm2", sums.all.unreached_mm2, "not reached",
              sums.all.unreached_mm2 > 0 ? fmt::format("{:.4g} mm2", sums.all.unreached_mm2) : ""}};
@@ -142,7 +132,7 @@ std::string scan_text(std::span<const ExposureResult> exposures) {
                                       : fmt::format(", {:.4g} mm2 not reached", sums.all.unreached_mm2);
     return fmt::format("{} vectors, {} marked, {} jumped, {}, {}{}",
                        grouped(sums.contour_vectors + sums.hatch_vectors), length_text(sums.all.marked_mm),
-                       length_text(sums.all.jumped_mm), time_text(sums.all.build_seconds),
+                       length_text(sums.all.jumped_mm), duration(sums.all.build_seconds),
                        energy_text(sums.all.energy_j), unreached);
 }
 

@@ -281,6 +281,14 @@ constexpr std::array kinds{
         .many = "parts overlap in {amount:.4g} mm2 {on_layers}, where the material is exposed more "
                 "than once: move them apart, or unite them by `unite_parts`",
         .unit = "mm2"},
+    FindingDescription{.kind = FindingKind::unchecked_chains,
+                       .name = "unchecked_chains",
+                       .origin = FindingOrigin::print,
+                       .one = "{count} open contour is not checked, {where}: it bounds no material; a closed "
+                              "mesh, or `close_gaps_mm`, closes it",
+                       .many = "{count} open contours are not checked, {where}: they bound no material; a "
+                               "closed mesh, or `close_gaps_mm`, closes them",
+                       .count_key = "unchecked_chains"},
     FindingDescription{.kind = FindingKind::islands,
                        .name = "islands",
                        .origin = FindingOrigin::print,

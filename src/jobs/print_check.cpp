@@ -109,6 +109,8 @@ PrintChecker::PrintChecker(const PrintCheckOptions& options, PlaneRange planes, 
 Commit PrintChecker::prepare(std::uint32_t plane, std::span<const Layer> parts) {
     auto checked = std::make_shared<CheckedPlane>();
     checked->cells = cells_of(parts.size() == 1 ? parts.front() : merged(parts), limits_);
+    for (const Layer& part : parts)
+        checked->open_chains += part.open_chains();
     if (std::find(supports_.begin(), supports_.end(), true) != supports_.end())
         checked->supports = merged_if(parts, supports_);
     return window_.prepare(plane, std::move(checked));
@@ -123,6 +125,7 @@ PrintChecker::PlaneFacts PrintChecker::facts_of(const PlaneNeighbours<CheckedPla
         facts.cells.push_back({.area_mm2 = cell.area_mm2, .centre = cell.centre});
         facts.is_material.push_back(cell.material);
     }
+    facts.area.open_chains = plane.own->open_chains;
     facts.cells.front().rooted = true;
     const std::vector<CellOverlap> shared = of_equal_kinds(overlaps(below, here, limits_), below, here);
     std::vector<double> carried(here.cells.size(), 0);
@@ -281,6 +284,12 @@ Findings PrintChecker::findings(const PrintCheck& check) const {
         if (finding.count > 0)
             all.add(std::move(finding));
     };
+    Finding chains = finding_of_layers(FindingKind::unchecked_chains, check.layers,
+                                       [&](std::size_t i) { return check.layers[i].open_chains > 0; });
+    chains.count = 0;
+    for (const PeelArea& layer : check.layers)
+        chains.count += layer.open_chains;
+    add(std::move(chains));
     add(finding_of(FindingKind::islands, check.islands,
                    [](const PrintIsland& island) { return !island.support; }));
     add(finding_of(FindingKind::loose_supports, check.islands,

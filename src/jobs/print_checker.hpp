@@ -37,6 +37,7 @@ class PrintChecker {
     struct CheckedPlane {
         LayerCells cells;
         Layer supports; ///< the material of supports
+        std::uint64_t open_chains = 0;
     };
     struct PlaneFacts;
 

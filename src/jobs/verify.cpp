@@ -112,7 +112,7 @@ void compare_with_images(const PlaneSource& source, std::span<const CheckedLayer
         plane.top += plate;
     }
     const Plan plan = plan_of(planes, options.rule, options.snap_mm);
-    const LayerStack made = layers_of(options, plan, steps_to_repeat(options.steps), execution);
+    const LayerStack made = layers_of(options, plan, steps_to_repeat(options, execution), execution);
     std::vector<LayerShape> sections(made.size());
     std::transform(made.begin(), made.end(), sections.begin(), shape_of);
     std::vector<LayerShape> images(checks.size());

@@ -84,6 +84,21 @@ class Check(ProgramTest):
         self.succeed("slice", "table.stl", "-o", "job.cli", "--layer-height", "0.5", "--scan")
         self.fail_with(3, "has scan vectors", "check", "job.cli")
 
+    def test_a_job_of_pixels_is_checked_like_its_mesh(self):
+        self.boxes("tower.stl", (0, 0, 0, 8, 8, 1), (0, 0, 1, 1, 8, 4), (7, 0, 1, 8, 8, 4), (1, 0, 1, 7, 1, 4), (1, 7, 1, 7, 8, 4),
+                   (3, 3, 2, 5, 5, 4), (0, 0, 4, 8, 8, 5))
+        self.succeed("slice", "tower.stl", "-o", "tower.goo", "--layer-height", "0.5", "--display-size", "20,10", "--resolution",
+                     "400x200", "--antialias", "1")
+        of_mesh = self.succeed("check", "tower.stl", "--layer-height", "0.5", "--json").json()
+        of_pixels = self.succeed("check", "tower.goo", "--json").json()
+        for count in ["layers", "islands", "cups", "traps", "empty_layers"]:
+            self.assertEqual(of_pixels[count], of_mesh[count], count)
+        self.assertEqual((of_mesh["islands"], of_mesh["traps"]), (1, 1))
+        for pixels, mesh in zip(of_pixels["list_of_islands"] + of_pixels["list_of_cavities"],
+                                of_mesh["list_of_islands"] + of_mesh["list_of_cavities"]):
+            self.assertEqual(pixels["layer"], mesh["layer"])
+            self.assertAlmostEqual(pixels["volume_mm3"], mesh["volume_mm3"], delta=0.02 * mesh["volume_mm3"])
+
     def test_slice_checks_while_it_slices(self):
         self.table()
         alone = self.succeed("check", "table.stl", "--layer-height", "0.5", "--json").json()

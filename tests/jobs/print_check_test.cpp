@@ -158,6 +158,20 @@ TEST(PrintCheck, FindsEmptyLayersAndJumpsOfTheArea) {
     EXPECT_EQ(jump.findings.first(Severity::warning), nullptr);
 }
 
+TEST(PrintCheck, DoesNotPassOpenContours) {
+    LayerStack stack = stack_of({block, block});
+    Layer open = normal_layer({}, {rectangle(0, 0, 10, 10)});
+    open.index = 2;
+    open.bottom = 1;
+    open.z = 1.25;
+    open.top = 1.5;
+    stack.push_back(open);
+    const PrintCheck check = check_print(source_of(std::vector<LayerStack>{stack}));
+    EXPECT_EQ(check.findings.count(FindingKind::unchecked_chains), 1U);
+    EXPECT_EQ(check.findings.first(Severity::warning)->first_z, 1);
+    EXPECT_EQ(check.layers[2].area_mm2, 0);
+}
+
 TEST(PrintCheck, IsEmptyForALayerStackWithoutMaterial) {
     EXPECT_TRUE(checked({}).layers.empty());
     EXPECT_TRUE(checked({{}, {}}).findings.empty());

@@ -58,13 +58,14 @@ enum class FindingKind : std::uint32_t {
     overlapping_parts,    ///< material of several parts, which scan vectors expose several times
 
     // Found by the check of a print.
-    islands,        ///< material that begins without material below it
-    loose_supports, ///< the same of parts that are supports
-    overhangs,      ///< areas that the layer below does not carry
-    cups,           ///< spaces that are enclosed while they are printed
-    traps,          ///< spaces that remain enclosed
-    empty_layers,   ///< layers without material between layers with material
-    area_jumps,     ///< layers with a much larger area than the layer below
+    unchecked_chains, ///< open contours, whose material is unknown
+    islands,          ///< material that begins without material below it
+    loose_supports,   ///< the same of parts that are supports
+    overhangs,        ///< areas that the layer below does not carry
+    cups,             ///< spaces that are enclosed while they are printed
+    traps,            ///< spaces that remain enclosed
+    empty_layers,     ///< layers without material between layers with material
+    area_jumps,       ///< layers with a much larger area than the layer below
 
     // Content that the format of an output cannot hold.
     rounded_points,        ///< contours whose points are moved noticeably; the amount is the merged points

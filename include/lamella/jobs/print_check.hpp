@@ -17,7 +17,8 @@ struct PrintCheckOptions {
     /// island, mm^2. At 0, only material that does not overlap it.
     double touch_mm2 = 0;
     /// Smallest angle between a surface that faces the plate and the plate, in degrees, at which a layer is
-    /// carried by the one below: above 0, below 90.
+    /// carried by the one below: above 0, below 90. A thousandth of the reach that results is granted for
+    /// rounding.
     double overhang_angle = 45;
     /// Limit of the memory for crossings, offsets and unions of layers; see layer_limits.
     std::uint64_t max_memory = 0;
@@ -26,7 +27,8 @@ struct PrintCheckOptions {
 /// Throws Error{usage} for options out of their range.
 void check(const PrintCheckOptions& options);
 
-/// Connected material, or a connected space, over consecutive layers.
+/// Connected material, or a connected space, over consecutive layers. If several areas of one layer begin a
+/// region, its centre and first area are those of one of them.
 struct PrintRegion {
     std::uint64_t layer = 0; ///< index of its first layer
     double bottom_mm = 0;    ///< bottom of the first layer
@@ -66,6 +68,7 @@ struct PeelArea {
     double exposed_mm2 = 0;  ///< area without material in the layer below; all of the first layer
     double overhang_mm2 = 0; ///< area farther from the material below than the angle allows, without islands
     double overhang_mm = 0;  ///< largest distance of a point in it from the material below
+    std::uint64_t open_chains = 0; ///< contours that are left out, because they are not closed
 };
 
 struct PrintCheck {
