@@ -46,8 +46,9 @@ void check_steps(const LayerSteps& steps) {
     if (steps.offset_mm != 0)
         static_cast<void>(offset(none, steps.offset_mm, {.corners = steps.offset_corners}));
     const BottomInset& bottom = steps.bottom;
-    if (bottom != BottomInset{} && !(bottom.inset_mm > 0 && std::isfinite(bottom.inset_mm) &&
-                                     bottom.height_mm > 0 && std::isfinite(bottom.height_mm)))
+    if ((bottom.inset_mm != 0 || bottom.height_mm != 0) &&
+        !(bottom.inset_mm > 0 && std::isfinite(bottom.inset_mm) && bottom.height_mm > 0 &&
+          std::isfinite(bottom.height_mm)))
         throw Error(ErrorKind::usage,
                     fmt::format("the first layers cannot shrink by {} mm over {} mm; both must be above 0",
                                 bottom.inset_mm, bottom.height_mm));

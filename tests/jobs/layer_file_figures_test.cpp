@@ -1,3 +1,4 @@
+#include "lamella/inputs/read_file.hpp"
 #include "lamella/jobs/layer_files.hpp"
 
 #include "fixtures/rounds.hpp"

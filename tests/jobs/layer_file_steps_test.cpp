@@ -1,5 +1,6 @@
 #include "lamella/contour/normal_form.hpp"
 #include "lamella/contour/stack_hash.hpp"
+#include "lamella/inputs/read_file.hpp"
 #include "lamella/jobs/layer_files.hpp"
 #include "lamella/slices/layer_writer.hpp"
 
