@@ -1,4 +1,5 @@
 #include "lamella/core/error.hpp"
+#include "lamella/inputs/read_file.hpp"
 #include "lamella/jobs/plate.hpp"
 #include "lamella/jobs/slice_file.hpp"
 #include "lamella/slices/layer_writer.hpp"
@@ -254,7 +255,7 @@ void check_shard(const SliceArguments& arguments) {
     if (arguments.output.empty())
         return;
     const LayerFormat& format = arguments.writing.chosen(arguments.output);
-    if (format.one_way)
+    if (format.one_way || format.image) // images have heights above the plate, so shards would overlap
         throw Error(
             ErrorKind::usage,
             fmt::format("--shard goes with files that lamella merge can read; {} is none", format.name));

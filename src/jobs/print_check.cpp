@@ -4,6 +4,7 @@
 #include "lamella/core/error.hpp"
 #include "lamella/polygon/boolean.hpp"
 
+#include "core/executor.hpp"
 #include "jobs/print_checker.hpp"
 #include "polygon/overhang.hpp"
 

@@ -31,6 +31,7 @@ COMMANDS = {
     "slice": [["MESH", "-o", "OUT.json", *more] for more in (*(["--layer-height", "1", *step] for step in (
         [], *STEPS, ["--close-gaps", "5"], ["--scan"], ["--inspect"])), ["--adaptive", "0.1:1"])],
     "info": [["LAYERS"]],
+    "check": [["LAYERS"], ["MESH", "--layer-height", "1"]],
     "verify": [["LAYERS"], ["LAYERS", "--scan"], ["LAYERS", "--mesh", "MESH"], ["LAYERS", "--mesh", "MESH", "--offset=-0.05"]],
     "compare": [["LAYERS", "OTHER", "--area-difference"]],
     "convert": [["LAYERS", "OUT.svg", *more] for more in ([], *STEPS)] + [["LAYERS", "OUT.geojson"], ["LAYERS", "OUT.zip", "--format", "png-zip"]],
