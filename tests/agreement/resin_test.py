@@ -75,10 +75,11 @@ def sliced(part, path, printer, *options):
     return path
 
 
-def images(path):
+def images(path, most=None):
+    """The images of an archive, or the first few of them."""
     with zipfile.ZipFile(path) as archive:
         names = sorted(name for name in archive.namelist() if name.endswith(".png"))
-        return [resin_files.decode_png(archive.read(name))[..., 0] for name in names]
+        return [resin_files.decode_png(archive.read(name))[..., 0] for name in names[:most]]
 
 
 @pytest.mark.parametrize("printer, extension, kind, version, shown", PRINTERS, ids=NAMES)
@@ -297,7 +298,7 @@ def test_files_of_vendors_are_read_as_the_other_reader_does(tmp_path, name):
 
 def test_images_are_those_that_another_project_expects(tmp_path):
     run("convert", sample(tmp_path, "mars4max_gear_chitubox2.1.goo.xz"), tmp_path / "a.zip", "--format", "png-zip", "-q")
-    found = images(tmp_path / "a.zip")
+    found = images(tmp_path / "a.zip", 3)
     for index in range(3):
         expected = resin_files.decode_png((SAMPLES / f"mars4max_gear_layer{index}.png").read_bytes())[..., 0]
         assert np.array_equal(found[index], expected)
