@@ -325,6 +325,7 @@ FileJob make_job(const SliceArguments& arguments) {
         const LayerFormat& format = arguments.writing.chosen(job.output);
         job.format = format.name;
         job.write = arguments.writing.write_options(format);
+        job.image_cuts = arguments.writing.image.cuts.value_or(job.image_cuts);
     }
     job.write.strict = job.strict;
     job.write.page.title = title_of(job.inputs);
@@ -575,6 +576,7 @@ Command slice_command(Communicator* team) {
     const auto arguments = std::make_shared<SliceArguments>();
     arguments->team = team;
     OptionGroup images = image_options(arguments->writing.image);
+    images.options.push_back(z_antialias_option(arguments->writing.image));
     images.options = with_output(std::move(images.options));
     return {
         .name = "slice",

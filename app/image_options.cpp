@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <limits>
 #include <string_view>
 
@@ -46,6 +47,21 @@ AlongXY<std::uint32_t> parse_pixels(const std::string& text) {
     if (std::any_of(sides.begin(), sides.end(), [](std::uint64_t n) { return n < 1 || n > most_pixels; }))
         refuse();
     return {static_cast<std::uint32_t>(sides[0]), static_cast<std::uint32_t>(sides[1])};
+}
+
+/// Parses "C:V,...".
+std::vector<GreyPoint> parse_grey_curve(const std::string& text) {
+    std::vector<GreyPoint> curve;
+    for (const std::string_view point : list_items(text)) {
+        const std::size_t colon = point.find(':');
+        if (colon == std::string_view::npos)
+            throw Error(ErrorKind::usage,
+                        fmt::format("\"{}\" is not a covered part and a grey value, such as "
+                                    "0.5:180",
+                                    excerpt(point)));
+        curve.push_back({parse_number(point.substr(0, colon)), parse_number(point.substr(colon + 1))});
+    }
+    return curve;
 }
 
 Option lengths(std::string name, std::string placeholder, std::string help,
@@ -98,6 +114,11 @@ OptionGroup image_options(ImageArguments& target) {
                      1, most_antialias, target.antialias);
     Option gamma =
         positive("gamma", "G", "the grey value is 255 x (covered part)^G (default: 1)", target.gamma);
+    Option grey_curve = row(
+        "grey-curve", ValueKind::text, "C:V,...",
+        "grey values V (0 to 255) of pixels whose covered part is C (0 to 1), interpolated between, instead "
+        "of --gamma: 0:60,0.5:180 begins at 60 and ends at 255",
+        [&target](const std::string& text) { target.grey_curve = parse_grey_curve(text); });
     Option fade = count_within(
         "fade-layers",
         "number of layers in which the first exposure time fades to the normal one (default: 5; sl1: 10)", 0,
@@ -121,7 +142,7 @@ OptionGroup image_options(ImageArguments& target) {
                 {"landscape", "portrait"}, target.orientation),
          choice("mirror", "AXES", "axes along which the display is mirrored, as in PrusaSlicer",
                 {"none", "x", "y", "xy"}, target.mirror),
-         std::move(antialias), std::move(gamma),
+         std::move(antialias), std::move(gamma), std::move(grey_curve),
          input_file("resin",
                     "TOML file of exposures, movements of the plate and the resin; see lamella resin",
                     target.resin),
@@ -133,6 +154,14 @@ OptionGroup image_options(ImageArguments& target) {
                   "sl1s: 25)",
                   target.first_exposure_s),
          std::move(fade)}};
+}
+
+Option z_antialias_option(ImageArguments& target) {
+    return count_within(
+        "z-antialias",
+        "each image shows the mean of N cuts, evenly spaced in the thickness of its layer: grey "
+        "where a slope ends within the layer (default: 1, the cut of the layer)",
+        1, most_antialias, target.cuts);
 }
 
 void ImageArguments::apply(const LayerFormat& format, LayerWriteOptions& options) const {
@@ -147,6 +176,8 @@ void ImageArguments::apply(const LayerFormat& format, LayerWriteOptions& options
     check(!mirror.empty(), "mirror", &LayerFormat::image);
     check(antialias.has_value(), "antialias", &LayerFormat::image);
     check(gamma.has_value(), "gamma", &LayerFormat::image);
+    check(!grey_curve.empty(), "grey-curve", &LayerFormat::image);
+    check(cuts.has_value(), "z-antialias", &LayerFormat::image);
     check(!resin.empty(), "resin", &LayerFormat::exposure);
     check(exposure_s.has_value(), "exposure", &LayerFormat::exposure);
     check(first_exposure_s.has_value(), "first-exposure", &LayerFormat::exposure);
@@ -164,6 +195,7 @@ void ImageArguments::apply(const LayerFormat& format, LayerWriteOptions& options
     }
     image.raster.antialias = antialias.value_or(image.raster.antialias);
     image.raster.gamma = gamma.value_or(image.raster.gamma);
+    image.raster.grey_curve = grey_curve;
     if (!printer.empty())
         options.printer = &find_resin_printer(printer);
     options.resin = settings_on({});

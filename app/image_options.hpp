@@ -24,6 +24,8 @@ struct ImageArguments {
     std::string mirror = {};
     std::optional<std::uint32_t> antialias = {};
     std::optional<double> gamma = {};
+    std::vector<GreyPoint> grey_curve = {};
+    std::optional<std::uint32_t> cuts = {}; ///< see FileJob::image_cuts
     std::optional<double> exposure_s = {};
     std::optional<double> first_exposure_s = {};
     std::optional<std::uint32_t> fade_layers = {};
@@ -42,5 +44,7 @@ struct ImageArguments {
 };
 
 [[nodiscard]] OptionGroup image_options(ImageArguments& target);
+/// Returns the option that sets `cuts`, which needs a mesh.
+[[nodiscard]] Option z_antialias_option(ImageArguments& target);
 
 } // namespace lamella::app

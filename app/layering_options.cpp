@@ -17,10 +17,7 @@ namespace lamella::app {
 
 std::vector<HeightRange> parse_height_ranges(std::string_view text) {
     std::vector<HeightRange> ranges;
-    for (std::string_view rest = text; !rest.empty();) {
-        const std::size_t comma = rest.find(',');
-        const std::string_view one = rest.substr(0, comma);
-        rest.remove_prefix(comma == std::string_view::npos ? rest.size() : comma + 1);
+    for (const std::string_view one : list_items(text)) {
         const std::size_t equals = one.find('=');
         const std::size_t colon = one.find(':');
         if (equals == std::string_view::npos || colon == std::string_view::npos || colon > equals)

@@ -149,6 +149,16 @@ std::uint64_t parse_byte_size(std::string_view text) {
     return static_cast<std::uint64_t>(bytes);
 }
 
+std::vector<std::string_view> list_items(std::string_view text) {
+    std::vector<std::string_view> items;
+    while (!text.empty()) {
+        const std::size_t comma = text.find(',');
+        items.push_back(text.substr(0, comma));
+        text.remove_prefix(comma == std::string_view::npos ? text.size() : comma + 1);
+    }
+    return items;
+}
+
 std::vector<double> parse_numbers(std::string_view text) {
     return read_numbers(text, [](std::string_view word) { refuse(word, a_number); });
 }

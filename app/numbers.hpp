@@ -30,6 +30,8 @@ namespace lamella::app {
 [[nodiscard]] std::pair<std::uint64_t, std::uint64_t> parse_index_range(std::string_view text);
 /// Parses "2/8": the second of eight; both count from 1.
 [[nodiscard]] std::pair<std::uint32_t, std::uint32_t> parse_share(std::string_view text);
+/// Returns the items of a list, which are separated by commas. The views are parts of `text`.
+[[nodiscard]] std::vector<std::string_view> list_items(std::string_view text);
 
 /// Returns the shortest text that reads back to the same number.
 [[nodiscard]] std::string exact(double value);

@@ -27,6 +27,7 @@ MESH_FORMATS = ("stl", "ply", "obj")
 OPTIONS = {
     "units_mm": "units", "short_form": "short_form", "pixel_mm": "picture", "pixels": "picture", "display_mm": "picture",
     "printer": "picture", "orientation": "picture", "mirror": "picture", "antialias": "picture", "gamma": "picture",
+    "grey_curve": "picture",
     "exposure_s": "exposure", "first_exposure_s": "exposure", "fade_layers": "exposure",
 }  # fmt: skip
 # Formats that store the heights of layers unchanged, or no heights. They accept layers without thickness.
@@ -51,6 +52,16 @@ def _columns_and_rows(name: str, value: Any) -> Tuple[int, int]:
 
 
 # Types of arguments, each with its check.
+def _grey_curve(name: str, points: Any) -> Tuple[Tuple[float, float], ...]:
+    words = "pairs of two numbers (covered part, grey value)"
+
+    def one(name: str, value: Any) -> Tuple[float, float]:
+        return check.pair(name, value, words, check.number)
+
+    return check.several(name, points, None, words, one)
+
+
+GreyCurve = Annotated[Sequence[Tuple[float, float]], _grey_curve]
 Pixels = Annotated[Tuple[int, int], _columns_and_rows]
 Count = Annotated[int, partial(check.whole, most=2**32 - 1)]
 
@@ -163,6 +174,7 @@ def write(
     mirror: Optional[Mirror] = None,
     antialias: Optional[Antialias] = None,
     gamma: Optional[Positive] = None,
+    grey_curve: Optional[GreyCurve] = None,
     exposure_s: Optional[Positive] = None,
     first_exposure_s: Optional[Positive] = None,
     fade_layers: Optional[Count] = None,
@@ -194,6 +206,8 @@ def write(
     antialias: 1 for black and white, by the centres of pixels; 2 to 64 for grey values, which are the covered fractions
         of pixels, exact for up to that many corners close together; 8 by default.
     gamma: exponent of grey values: 255 times the covered fraction to this power; 1 by default.
+    grey_curve: pairs (covered fraction from 0 to 1, grey value from 0 to 255), instead of gamma. Values between two pairs
+        are interpolated; [(0, 60)] makes 60 the darkest grey.
     exposure_s, first_exposure_s: exposure time in seconds of a layer, and of each of the first layers (formats of resin
         printers).
     fade_layers: number of layers over which the first exposure fades to the normal one; sl1, sl1s: 10 by default.
@@ -400,6 +414,7 @@ def convert(
     mirror: Optional[Mirror] = None,
     antialias: Optional[Antialias] = None,
     gamma: Optional[Positive] = None,
+    grey_curve: Optional[GreyCurve] = None,
     exposure_s: Optional[Positive] = None,
     first_exposure_s: Optional[Positive] = None,
     fade_layers: Optional[Count] = None,

@@ -215,6 +215,9 @@ LayerWriteOptions write_options(const py::dict& given) {
     }
     image.raster.antialias = option<unsigned>(given, "antialias").value_or(image.raster.antialias);
     image.raster.gamma = option<double>(given, "gamma").value_or(image.raster.gamma);
+    if (const auto curve = option<std::vector<std::pair<double, double>>>(given, "grey_curve"))
+        for (const auto& [covered, value] : *curve)
+            image.raster.grey_curve.push_back({.covered = covered, .value = value});
     options.resin.exposure_s = option<double>(given, "exposure_s");
     options.resin.bottom_exposure_s = option<double>(given, "first_exposure_s");
     options.resin.transition_layers = option<std::uint32_t>(given, "fade_layers");

@@ -75,12 +75,14 @@ void Plane::add(Layer lines, PointArray hatch_lines) {
     polylines.push_back(std::move(lines));
     hatches.push_back(std::move(hatch_lines));
     image.reset();
+    cuts.clear();
 }
 
 void Plane::append(Plane other) {
     std::move(other.polylines.begin(), other.polylines.end(), std::back_inserter(polylines));
     std::move(other.hatches.begin(), other.hatches.end(), std::back_inserter(hatches));
     image.reset();
+    cuts.clear();
 }
 
 void check(const Plane& plane) {

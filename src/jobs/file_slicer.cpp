@@ -10,6 +10,7 @@
 #include "core/executor.hpp"
 #include "core/progress.hpp"
 #include "core/stopwatch.hpp"
+#include "jobs/layer_cuts.hpp"
 #include "jobs/plate_builder.hpp"
 #include "jobs/plate_names.hpp"
 #include "jobs/plate_slicing.hpp"
@@ -73,6 +74,7 @@ LayerJob layer_job(const FileJob& job, const Plate& plate, const LayerLimits& li
                     .steps = job.steps,
                     .scan = job.scan,
                     .check = job.check,
+                    .image_cuts = job.image_cuts,
                     .statistics = job.layer_statistics,
                     .limits = limits};
     layers.steps.bottom.plate_mm = plate.box.min.z;
@@ -161,6 +163,19 @@ Execution in_range(PlaneRange range, PlaneRange mine, const Execution& execution
     });
 }
 
+void check_image_cuts(const FileJob& job) {
+    if (job.image_cuts < 1 || job.image_cuts > most_antialias)
+        throw Error(ErrorKind::usage, fmt::format("{} cuts for the image of a layer: choose 1 to {}",
+                                                  job.image_cuts, most_antialias));
+    if (job.output.empty() || !layer_format(job.format, job.output).image)
+        throw Error(ErrorKind::usage, "several cuts for the image of a layer need an output in a format of "
+                                      "images, such as png");
+    if (job.scan || job.shard)
+        throw Error(ErrorKind::usage,
+                    fmt::format("several cuts for the image of a layer and `{}` exclude each other",
+                                job.scan ? "scan" : "shard"));
+}
+
 /// Throws Error{usage} for an impossible job, before any large file is read.
 void check_job(const FileJob& job) {
     check_inputs(job.inputs);
@@ -175,6 +190,8 @@ void check_job(const FileJob& job) {
     check_steps(job.steps);
     if (job.scan)
         check_strategy(*job.scan);
+    if (job.image_cuts != 1)
+        check_image_cuts(job);
     if (job.check) {
         check(*job.check);
         if (job.shard)
@@ -272,7 +289,7 @@ void FileSlicer::slice(JobOutput& output) {
     const PlaneRange sliced = with_neighbours(job_, mine_, layers.size());
     LayerProcessor& processor =
         processor_.emplace(layer_job(job_, feed_.plate(), limits_), layers, sliced, mine_, output);
-    const double seconds = slice_ranges(sliced, processor);
+    const double seconds = slice_ranges(planes_.sliced(sliced), processor);
     processor.set_times(result_.seconds);
     result_.seconds.weld = prepared_.seconds;
     if (feed_.meshes() == nullptr)
@@ -285,11 +302,17 @@ void FileSlicer::slice(JobOutput& output) {
 
 /// Slices planes range by range into the processor. Returns the seconds.
 double FileSlicer::slice_ranges(PlaneRange sliced, LayerProcessor& processor) {
-    const Plan& plan = planes_.plan;
+    const Plan& plan = planes_.sliced();
     const std::uint64_t first = plan.layers.front().index;
-    const PlateSink sink{.prepare = [&processor, first](Plane bodies) {
+    std::optional<CutCollector> collector;
+    if (planes_.cuts)
+        collector.emplace(planes_.plan, *planes_.cuts);
+    const PlateSink sink{.prepare = [&](Plane bodies) {
         const auto plane = static_cast<std::uint32_t>(bodies.polylines.front().index - first);
-        return processor.prepare(plane, std::move(bodies));
+        if (!collector)
+            return processor.prepare(plane, std::move(bodies));
+        std::optional<Plane> layer = collector->add(plane, std::move(bodies));
+        return layer ? processor.prepare(planes_.layer_of(plane), std::move(*layer)) : Commit();
     }};
     const ShapeVisitor visitor = near_face_visitor(feed_, plan);
     const std::vector<PlaneRange> ranges = feed_.bring(plan, sliced, execution_);
@@ -371,11 +394,11 @@ FileResult FileSlicer::finish(JobOutput& output) {
     describe_job();
     LayerTotals& totals = processor_->totals();
     for (const Feed::NearPlane& near : feed_.near_faces())
-        if (all_.begin <= near.plane && near.plane < all_.end)
+        if (const std::uint32_t layer = planes_.layer_of(near.plane); all_.begin <= layer && layer < all_.end)
             totals.add({.kind = FindingKind::near_faces,
                         .file = static_cast<std::uint32_t>(near.file),
                         .part = PlaneFinding::no_part,
-                        .plane = near.plane - all_.begin,
+                        .plane = layer - all_.begin,
                         .count = 1,
                         .amount = near.area_mm2,
                         .largest = near.farthest_mm});

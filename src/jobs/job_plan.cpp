@@ -158,8 +158,12 @@ Plan plan_of(const FileJob& job, const Plate& plate, const Execution& execution)
 }
 
 JobPlan plan_job(const FileJob& job, const Plate& plate, const Execution& execution) {
-    JobPlan planes{plan_of(job, plate, execution), {}};
+    JobPlan planes{.plan = plan_of(job, plate, execution), .written = {}};
     planes.written = {0, static_cast<std::uint32_t>(planes.plan.layers.size())};
+    if (job.image_cuts > 1) {
+        check_planes(job, plate, planes.plan.layers.size() * (job.image_cuts + std::uint64_t{1}));
+        planes.cuts.emplace(planes.plan, job.image_cuts);
+    }
     const PlaneSelection& only = job.layering.only;
     if (!job.scan || (!only.z_range && !only.index_range))
         return planes;
@@ -192,14 +196,15 @@ PlaneRange divide(const FileJob& job, const JobPlan& planes, Feed& feed, const S
                                                   job.shard->number, job.shard->count));
     if (!job.shard && process.count == 1 && feed.in_memory())
         return written;
-    const RangeSurvey survey(part_of(feed.count(planes.plan, execution), written));
+    const PlaneRange sliced = planes.sliced(written);
+    const RangeSurvey survey(part_of(feed.count(planes.sliced(), execution), sliced));
     Shard shard = job.shard.value_or(process);
     if (!job.shard)
         shard.count = std::min(shard.count, written.size());
     if (shard.number > shard.count)
         return {written.end, written.end};
     const PlaneRange range = divide_evenly(survey, shard.count)[shard.number - 1];
-    return {written.begin + range.begin, written.begin + range.end};
+    return {planes.layer_of(sliced.begin + range.begin), planes.layer_of(sliced.begin + range.end)};
 }
 
 } // namespace lamella

@@ -8,8 +8,11 @@
 #include "lamella/slicing/plan.hpp"
 
 #include "jobs/feed.hpp"
+#include "jobs/layer_cuts.hpp"
 
 #include <cstddef>
+#include <cstdint>
+#include <optional>
 
 namespace lamella {
 
@@ -18,6 +21,18 @@ namespace lamella {
 struct JobPlan {
     Plan plan;
     PlaneRange written;
+    std::optional<LayerCuts> cuts = {}; ///< set if layers have several cuts
+
+    /// Returns the plan that is sliced: that of the layers, or of their cuts.
+    [[nodiscard]] const Plan& sliced() const noexcept { return cuts ? cuts->plan() : plan; }
+    /// Returns the planes of this plan that belong to some of the layers.
+    [[nodiscard]] PlaneRange sliced(PlaneRange layers) const noexcept {
+        return cuts ? cuts->of(layers) : layers;
+    }
+    /// Returns the layer to which a plane of this plan belongs.
+    [[nodiscard]] std::uint32_t layer_of(std::uint32_t plane) const noexcept {
+        return cuts ? cuts->layer_of(plane) : plane;
+    }
 };
 
 /// Throws Error{input} for a part without height.

@@ -35,7 +35,8 @@ struct LayerJob {
     LayerSteps steps = {};
     std::optional<ScanStrategy> scan = {};
     std::optional<PrintCheckOptions> check = {};
-    bool statistics = false; ///< measures and hashes every layer
+    std::uint32_t image_cuts = 1; ///< see FileJob
+    bool statistics = false;      ///< measures and hashes every layer
     LayerLimits limits = {};
 };
 

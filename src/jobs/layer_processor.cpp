@@ -49,12 +49,8 @@ void LayerProcessor::set_times(FileResult::Seconds& seconds) const noexcept {
 }
 
 Commit LayerProcessor::prepare(std::uint32_t number, Plane bodies) {
-    std::vector<Layer> parts = std::move(bodies.polylines);
-    ClosedPlane closed;
-    if (job_.close_gaps_mm && std::any_of(parts.begin(), parts.end(), std::mem_fn(&Layer::open_chains))) {
-        closed = close_gaps_on_plane(parts, *job_.close_gaps_mm, job_.limits);
-        parts = std::move(closed.layers);
-    }
+    ClosedPlane closed = this->closed(std::move(bodies.polylines));
+    std::vector<Layer> parts = std::move(closed.layers);
     std::vector<InvertedRings> inverted = inverted_of(parts);
     PlateMaterial material;
     if (job_.steps.any() || !job_.negatives.empty()) {
@@ -81,7 +77,8 @@ Commit LayerProcessor::prepare(std::uint32_t number, Plane bodies) {
             if (united.overlaps_mm2[i] > job_.scan->accepted_mm2)
                 totals_.add_overlap(number - mine_.begin, i, united.overlaps_mm2[i]);
     }
-    Commit write = timed(job_.scan ? with_neighbours(number, parts) : formatted(Plane(std::move(parts))));
+    Commit write = timed(job_.scan ? with_neighbours(number, parts)
+                                   : formatted(with_cuts(std::move(parts), std::move(bodies.cuts))));
     if (!check)
         return write;
     return [check = std::move(check), write = std::move(write)](Completions& after) {
@@ -89,6 +86,31 @@ Commit LayerProcessor::prepare(std::uint32_t number, Plane bodies) {
         if (write)
             write.in_order(after);
     };
+}
+
+/// Closes gaps, if the job does.
+ClosedPlane LayerProcessor::closed(std::vector<Layer> parts) const {
+    if (job_.close_gaps_mm && std::any_of(parts.begin(), parts.end(), std::mem_fn(&Layer::open_chains)))
+        return close_gaps_on_plane(parts, *job_.close_gaps_mm, job_.limits);
+    ClosedPlane unchanged;
+    unchanged.layers = std::move(parts);
+    return unchanged;
+}
+
+/// Returns the plane of these parts with the cuts for its image, if it has several. The parts are one of them
+/// if the others are fewer than the job demands.
+Plane LayerProcessor::with_cuts(std::vector<Layer> parts, std::vector<std::vector<Layer>> cuts) const {
+    Plane plane(std::move(parts));
+    const bool with_parts = !cuts.empty() && cuts.size() < job_.image_cuts;
+    for (std::vector<Layer>& cut : cuts) {
+        std::vector<Layer> bodies = closed(std::move(cut)).layers;
+        if (job_.steps.any() || !job_.negatives.empty())
+            bodies = material_of(bodies, job_.negatives, job_.steps, job_.limits, job_.names).parts;
+        plane.cuts.push_back(std::move(bodies));
+    }
+    if (with_parts)
+        plane.cuts.push_back(plane.polylines);
+    return plane;
 }
 
 /// Passes a plane that is written to the check of the print, if there is one.

@@ -2,6 +2,7 @@
 
 // Takes the layers of a plane from their source through all stages to the output.
 
+#include "lamella/contour/close_gaps.hpp"
 #include "lamella/contour/layer.hpp"
 #include "lamella/core/commit.hpp"
 #include "lamella/jobs/file_result.hpp"
@@ -35,6 +36,7 @@ class LayerProcessor {
                    JobOutput& output);
 
     /// Like PlateSink::prepare, for the plane with this number among all planes. Hatch lines are dropped.
+    /// Cuts of the plane go through the same stages as its polylines, up to the layer steps.
     [[nodiscard]] Commit prepare(std::uint32_t number, Plane bodies);
 
     [[nodiscard]] LayerTotals& totals() noexcept { return totals_; }
@@ -52,6 +54,8 @@ class LayerProcessor {
     [[nodiscard]] Plane vectors_of(const PlaneNeighbours<std::vector<ScanLayer>>& plane);
     [[nodiscard]] Commit formatted(const Plane& plane);
     [[nodiscard]] Commit timed(Commit commit);
+    [[nodiscard]] ClosedPlane closed(std::vector<Layer> parts) const;
+    [[nodiscard]] Plane with_cuts(std::vector<Layer> parts, std::vector<std::vector<Layer>> cuts) const;
     [[nodiscard]] Commit checked(std::uint32_t number, std::span<const Layer> parts);
 
     LayerJob job_;

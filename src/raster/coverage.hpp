@@ -5,6 +5,7 @@
 #include "raster/coverage_band.hpp"
 #include "raster/drawn_row.hpp"
 #include "raster/edges.hpp"
+#include "raster/grey_values.hpp"
 #include "raster/row_sweep.hpp"
 
 #include <cstddef>
@@ -42,7 +43,7 @@ class CoverageRows {
   public:
     CoverageRows(std::span<const Layer> parts, const PixelGrid& grid, const RasterOptions& options)
         : pieces_(parts, grid), width_(grid.width), strips_(options.antialias),
-          coverage_(grid.width, 1, options.gamma) {}
+          coverage_(grid.width, 1, grey_values(options)) {}
 
     [[nodiscard]] DrawnRow draw(std::uint32_t row);
     /// Returns the area that no row shows; the rows show all.

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cassert>
-#include <cmath>
 
 namespace lamella {
 
@@ -60,12 +59,8 @@ namespace {
 
 } // namespace
 
-CoverageBand::CoverageBand(std::uint32_t width, std::uint32_t rows, double gamma)
-    : width_(width), own_(width, rows), common_(width, 1), runs_(std::size_t{width} + 1) {
-    for (std::size_t i = 0; i < value_of_.size(); ++i)
-        value_of_[i] =
-            static_cast<std::uint8_t>(std::lround(255 * std::pow(static_cast<double>(i) / 255, gamma)));
-}
+CoverageBand::CoverageBand(std::uint32_t width, std::uint32_t rows, const GreyValues& values)
+    : width_(width), own_(width, rows), common_(width, 1), value_of_(values), runs_(std::size_t{width} + 1) {}
 
 void CoverageBand::begin_along(std::uint32_t row, double from, double to, double weight) {
     slope(own_.row(row), width_, from, to, weight);
@@ -104,7 +99,7 @@ std::span<const PixelRun> CoverageBand::take(std::uint32_t row) {
     double coverage = 0;
     double clamped = 0;
     double unseen = 0;
-    double unseen_here = 0; // `clamped` if it is rounded to 0, else 0
+    double unseen_here = 0; // `clamped` if the value is 0, else 0
     std::uint32_t since = 0;
     std::uint8_t value = 0;
     if (common_.touched(0)) {
@@ -123,9 +118,9 @@ std::span<const PixelRun> CoverageBand::take(std::uint32_t row) {
         clamped = 1 < clamped ? 1 : clamped;
         // The conversion to 32 bits, signed, is a single instruction.
         const double rounded_up = clamped * 255 + 0.5;
-        unseen_here = rounded_up < 1 ? clamped : 0;
         const std::uint8_t value_here =
             value_of_[static_cast<std::size_t>(static_cast<std::int32_t>(rounded_up))];
+        unseen_here = value_here == 0 ? clamped : 0;
         // A run that ends here is always written, but kept only if it has pixels and a value other than the
         // next one.
         *next = {here, value};

@@ -5,9 +5,9 @@
 #include "lamella/raster/image.hpp"
 
 #include "raster/edges.hpp"
+#include "raster/grey_values.hpp"
 #include "raster/row_changes.hpp"
 
-#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -17,7 +17,7 @@ namespace lamella {
 /// Sums up the coverage of the pixels of a few rows from the points where material begins and ends.
 class CoverageBand {
   public:
-    CoverageBand(std::uint32_t width, std::uint32_t rows, double gamma);
+    CoverageBand(std::uint32_t width, std::uint32_t rows, const GreyValues& values);
 
     /// Adds material whose weight increases linearly from 0 at u = `from` to `weight` at u = `to`, and is
     /// `weight` from there to the end of the row. A negative weight ends material.
@@ -49,7 +49,7 @@ class CoverageBand {
     std::uint32_t width_;
     RowChanges own_;    ///< changes of the coverage in each row
     RowChanges common_; ///< one row: changes that all rows have in common
-    std::array<std::uint8_t, 256> value_of_{};
+    GreyValues value_of_;
     std::vector<PixelRun> runs_;
     double covered_ = 0;
     double unseen_ = 0;

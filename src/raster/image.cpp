@@ -5,6 +5,7 @@
 #include "raster/centres.hpp"
 #include "raster/coverage.hpp"
 #include "raster/drawn_row.hpp"
+#include "raster/grey_values.hpp"
 #include "raster/summed_coverage.hpp"
 
 #include <fmt/format.h>
@@ -32,9 +33,7 @@ void check(const PixelGrid& grid, const RasterOptions& options) {
     if (options.antialias < 1 || options.antialias > most_antialias)
         throw Error(ErrorKind::usage, fmt::format("anti-aliasing of level {}: choose 1 (none) to {}",
                                                   options.antialias, most_antialias));
-    if (!(options.gamma > 0) || !std::isfinite(options.gamma))
-        throw Error(ErrorKind::usage,
-                    fmt::format("a gamma of {} makes no values; choose a positive number", options.gamma));
+    check_grey(options);
 }
 
 template <class Rows>
@@ -69,7 +68,7 @@ RasterAreas rasterise(std::span<const Layer> parts, const PixelGrid& grid, const
     if (options.antialias == 1)
         return draw(CentreRows(parts, grid), grid.height, sink);
     if (options.winds_once)
-        return draw(SummedRows(parts, grid, options.gamma), grid.height, sink);
+        return draw(SummedRows(parts, grid, grey_values(options)), grid.height, sink);
     return draw(CoverageRows(parts, grid, options), grid.height, sink);
 }
 

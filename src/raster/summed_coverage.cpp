@@ -9,10 +9,10 @@ namespace lamella {
 // the right end of the row, with the sign of its direction. Edges are visited in the order of the contours.
 // Many consecutive edges may lie in one pixel; their sum is added to the row at once.
 
-SummedRows::SummedRows(std::span<const Layer> parts, const PixelGrid& grid, double gamma)
+SummedRows::SummedRows(std::span<const Layer> parts, const PixelGrid& grid, const GreyValues& values)
     : bands_(parts, grid), width_(grid.width), height_(grid.height),
       downwards_(grid.ux * grid.vy > grid.uy * grid.vx ? -1 : 1),
-      coverage_(grid.width, bands_.rows(), gamma) {}
+      coverage_(grid.width, bands_.rows(), values) {}
 
 DrawnRow SummedRows::draw(std::uint32_t row) {
     if (row == end_) {

@@ -6,6 +6,7 @@
 #include "raster/coverage_band.hpp"
 #include "raster/drawn_row.hpp"
 #include "raster/edges.hpp"
+#include "raster/grey_values.hpp"
 
 #include <cstdint>
 #include <span>
@@ -16,7 +17,7 @@ namespace lamella {
 /// over its area, which is the coverage if the winding number is 0 or 1 everywhere.
 class SummedRows {
   public:
-    SummedRows(std::span<const Layer> parts, const PixelGrid& grid, double gamma);
+    SummedRows(std::span<const Layer> parts, const PixelGrid& grid, const GreyValues& values);
 
     [[nodiscard]] DrawnRow draw(std::uint32_t row);
     /// Returns the area that no row shows; the rows show all.

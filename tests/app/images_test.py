@@ -15,6 +15,9 @@ class Images(ProgramTest):
         self.assertIsNone(archive.testzip())
         return archive
 
+    def pixels(self, name):
+        return b"".join(Image(self.bytes_of(name)).rows)
+
     def settings(self, archive, name):
         lines = archive.read(name).decode().splitlines()
         self.assertEqual(lines, sorted(lines))
@@ -115,6 +118,25 @@ class Images(ProgramTest):
         image = Image(archive.read("my_part00000.png"))
         self.assertEqual((image.width, image.height), (200, 100))
 
+    def test_cuts_through_a_layer_become_its_image(self):
+        self.succeed("make", "sphere", "--size", "40", "-o", "ball.stl")
+        display = ["--resolution", "120x120", "--display-size", "60,60", "--format", "png"]
+        for count in 2, 3:
+            with self.subTest(count):
+                self.succeed("slice", "ball.stl", "-o", f"mean{count}", "--layer-height", "3", "--layers", "0:6",
+                             "--z-antialias", str(count), "--grey-curve", "0:40,0.5:100", *display)
+                self.succeed("slice", "ball.stl", "-o", f"cuts{count}", "--layer-height", str(3 / count), *display)
+                grey = 0
+                for layer in range(6):
+                    mean = self.pixels(f"mean{count}/{layer:05}.png")
+                    cuts = [self.pixels(f"cuts{count}/{layer * count + i:05}.png") for i in range(count)]
+                    for found, *values in zip(mean, *cuts):
+                        covered = (sum(values) + count // 2) // count / 255
+                        value = 40 + 120 * covered if covered < 0.5 else 100 + 310 * (covered - 0.5)
+                        self.assertAlmostEqual(found, value if covered > 0 else 0, delta=0.51)
+                        grey += 0 < found < 255
+                self.assertGreater(grey, 600)
+
     def test_a_layer_that_covers_more_than_half_the_display_is_a_slow_one(self):
         for size, slow in (("20,9.9,1", "0"), ("20,10.1,1", "10")):
             self.succeed("slice", self.box(size=size), "-o", "part.sl1", "--display-size", "20,20",
@@ -182,6 +204,11 @@ class Images(ProgramTest):
                 (["--antialias", "99999999999999999999999"], '"99999999999999999999999" is not a whole number from 1'),
                 (["--fade-layers", "5000000000"], '"5000000000" is not a whole number from 0 to 4294967295'),
                 (["--gamma", "0"], "above 0"),
+                (["--grey-curve", "0.5"], '"0.5" is not a covered part and a grey value, such as 0.5:180'),
+                (["--grey-curve", "0.5:300"], "grey curve with the point 0.5:300"),
+                (["--grey-curve", "0:60", "--gamma", "2"], "exclude each other"),
+                (["--z-antialias", "65"], '"65" is not a whole number from 1 to 64'),
+                (["--z-antialias", "2", "--shard", "1/2"], "shard"),
                 (["--mirror", "z"], "--mirror"),
                 (["--orientation", "upside"], "--orientation"),
                 (["--exposure", "3"], "sl1, sl1s, goo, ctb, cbddlp, anycubic, chitubox-zip, nanodlp, not with png-zip"),

@@ -150,6 +150,8 @@ export interface WriteOptions extends CallOptions {
   mirror?: 'none' | 'x' | 'y' | 'xy';
   antialias?: number;
   gamma?: number;
+  /** Grey values (0 to 255) of pixels by their covered part (0 to 1), interpolated between, instead of gamma. */
+  greyCurve?: (readonly [covered: number, value: number])[];
   exposure?: number;
   firstExposure?: number;
   fadeLayers?: number;
@@ -159,6 +161,8 @@ export interface SliceOptions extends WriteOptions, Placement {
   layerHeight?: number;
   firstLayerHeight?: number;
   sliceAt?: 'bottom' | 'middle' | 'top';
+  /** Number of cuts of each layer whose mean its image shows. */
+  zAntialias?: number;
   zRange?: Range;
   layers?: Range;
   /** Cuts at exactly these heights. */

@@ -241,6 +241,7 @@ const kebab = (name) => name.replace(/[A-Z]/g, (letter) => `-${letter.toLowerCas
 
 function valueText(name, value) {
   if (name === 'heights') return value.map(([from, to, height]) => `${from}:${to}=${height}`).join(',');
+  if (name === 'greyCurve') return value.map((point) => point.join(':')).join(',');
   if (name === 'resolution') return value.join('x');
   if (ranges.has(name)) return value.map((end) => end ?? '').join(':');
   return Array.isArray(value) ? value.join(',') : String(value);

@@ -109,6 +109,9 @@ struct Plane {
     /// The pixels of all parts together, if the plane comes from an image, as PlaneSource::grid maps them;
     /// the contours are then the outlines of its bright pixels. A plane with other contours has no image.
     std::shared_ptr<const RunImage> image = {};
+    /// The layers of all parts at several heights within the thickness of the layer: its image shows their
+    /// mean coverage. If there are none, the image shows the polylines.
+    std::vector<std::vector<Layer>> cuts = {};
 
     Plane() = default;
     /// A plane of one part without hatch lines. It shares the points of the layer.
@@ -122,9 +125,9 @@ struct Plane {
 
     /// Returns the number of parts.
     [[nodiscard]] std::size_t parts() const noexcept { return polylines.size(); }
-    /// Appends a part. An image of the others is dropped.
+    /// Appends a part. An image and cuts of the others are dropped.
     void add(Layer lines, PointArray hatch_lines = {});
-    /// Appends all parts of another plane at the same height. Images are dropped.
+    /// Appends all parts of another plane at the same height. Images and cuts are dropped.
     void append(Plane other);
 };
 

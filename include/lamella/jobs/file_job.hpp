@@ -93,6 +93,12 @@ struct FileJob {
     /// `shard` exclude.
     std::optional<ScanStrategy> scan;
 
+    /// Number of cuts, evenly spaced in the thickness of a layer, whose mean coverage its image shows:
+    /// anti-aliasing along z, up to `most_antialias`. 1: the image shows the cut of the layer. Everything
+    /// else that the job makes of a layer shows its cut in any case. Error{usage} for formats without images,
+    /// with `scan` and with `shard`.
+    std::uint32_t image_cuts = 1;
+
     std::string output; ///< path; "" writes nothing, "-" is standard output
     std::string format; ///< name; "": the extension of `output` selects the format
     LayerWriteOptions write;

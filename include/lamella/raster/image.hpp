@@ -17,6 +17,14 @@ namespace lamella {
 inline constexpr std::uint32_t most_pixels = 65535;
 inline constexpr unsigned most_antialias = 64;
 
+/// The grey value of pixels of which this part is covered.
+struct GreyPoint {
+    double covered = 0; ///< from 0 to 1
+    double value = 0;   ///< from 0 to 255
+
+    friend bool operator==(const GreyPoint&, const GreyPoint&) = default;
+};
+
 struct RasterOptions {
     /// Number of strips into which a row of pixels is divided where exact coverage would take too long. A
     /// pixel's coverage is the fraction of its area in which the winding number is not zero. Coverage is
@@ -36,6 +44,12 @@ struct RasterOptions {
     bool winds_once = false;
     /// The value of a pixel is 255 (v / 255)^gamma, rounded, where v is 255 times its coverage, rounded.
     double gamma = 1;
+    /// Points of a curve that gives the value of a pixel instead of `gamma`, which must then be 1. The
+    /// covered parts ascend; values between two points are interpolated. Unless there are other points at
+    /// these parts, the curve begins at 0:0 and ends at 1:255. Pixels without material always have the value
+    /// 0, so a first point of 0:60 makes 60 the darkest grey. Pixels that are covered entirely have the value
+    /// 255.
+    std::vector<GreyPoint> grey_curve = {};
 };
 
 /// Consecutive pixels of a row with the same value, from the end of the previous run up to `end`.

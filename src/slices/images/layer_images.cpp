@@ -5,6 +5,7 @@
 
 #include "container/inflate.hpp"
 #include "contour/box2.hpp"
+#include "raster/grey_values.hpp"
 #include "slices/images/png.hpp"
 
 #include <algorithm>
@@ -110,6 +111,47 @@ void make_black_and_white(std::vector<PixelRun>& row) {
     row.resize(kept);
 }
 
+void append_run(std::vector<ImageRun>& runs, ImageRun run) {
+    if (!runs.empty() && runs.back().value == run.value)
+        runs.back().end = run.end;
+    else
+        runs.push_back(run);
+}
+
+/// Appends `times` equal rows to the runs of an image.
+void append_rows(std::vector<ImageRun>& runs, std::span<const PixelRun> row, std::uint32_t times,
+                 std::uint32_t width) {
+    const std::uint64_t first = runs.empty() ? 0 : runs.back().end;
+    if (row.size() == 1) {
+        append_run(runs, {first + std::uint64_t{times} * width, row.front().value});
+        return;
+    }
+    for (std::uint32_t i = 0; i < times; ++i)
+        for (const PixelRun& run : row)
+            append_run(runs, {first + std::uint64_t{i} * width + run.end, run.value});
+}
+
+/// Returns the mean of images of the same size, with these values for means in steps of 1/255.
+RunImage mean_of(std::span<const RunImage> images, const GreyValues& values) {
+    RunImage mean{images.front().width, images.front().height, {}};
+    std::vector<std::size_t> at(images.size()); // the run of each image that contains the next pixel
+    const auto count = static_cast<std::uint32_t>(images.size());
+    for (std::uint64_t pixel = 0; pixel < mean.pixels();) {
+        std::uint64_t end = mean.pixels();
+        std::uint32_t sum = 0;
+        for (std::size_t i = 0; i < images.size(); ++i) {
+            const ImageRun& run = images[i].runs[at[i]];
+            end = std::min(end, run.end);
+            sum += run.value;
+        }
+        append_run(mean.runs, {end, values[(sum + count / 2) / count]});
+        for (std::size_t i = 0; i < images.size(); ++i)
+            at[i] += images[i].runs[at[i]].end == end ? 1 : 0;
+        pixel = end;
+    }
+    return mean;
+}
+
 double value_of(std::span<const PixelRun> row) {
     std::uint64_t sum = 0;
     std::uint32_t from = 0;
@@ -129,7 +171,29 @@ PlaneDrawing::PlaneDrawing(const PixelGrid& grid, const RasterOptions& options,
       mirror_rows_(images && (images->vx != grid.vx || images->vy != grid.vy)) {}
 
 RasterAreas PlaneDrawing::draw(const Plane& plane, const RowSink& sink) const {
-    return plane.image ? draw_image(*plane.image, sink) : draw_parts(plane.polylines, grid_, options_, sink);
+    if (plane.image)
+        return draw_image(*plane.image, sink);
+    return plane.cuts.empty() ? draw_parts(plane.polylines, grid_, options_, sink)
+                              : draw_mean(plane.cuts, sink);
+}
+
+RasterAreas PlaneDrawing::draw_mean(std::span<const std::vector<Layer>> cuts, const RowSink& sink) const {
+    RasterOptions linear = options_; // the values of cuts are their coverage
+    linear.gamma = 1;
+    linear.grey_curve.clear();
+    RasterAreas mean;
+    std::vector<RunImage> images;
+    const double share = 1 / static_cast<double>(cuts.size());
+    for (const std::vector<Layer>& cut : cuts) {
+        RunImage& image = images.emplace_back(RunImage{grid_.width, grid_.height, {}});
+        const RasterAreas areas = draw_parts(cut, grid_, linear, [&image](auto row, auto times) {
+            append_rows(image.runs, row, times, image.width);
+        });
+        mean.covered += share * areas.covered;
+        mean.unseen += share * areas.unseen;
+    }
+    static_cast<void>(draw_image(mean_of(images, grey_values(options_)), sink));
+    return mean;
 }
 
 RasterAreas PlaneDrawing::draw_image(const RunImage& image, const RowSink& sink) const {

@@ -33,8 +33,9 @@ struct LayerImage {
 RasterAreas draw_parts(std::span<const Layer> all, const PixelGrid& grid, RasterOptions options,
                        const RowSink& sink);
 
-/// Draws planes with the same grid and options: from their images if they have one, and otherwise from their
-/// contours. May be used by any number of threads at once.
+/// Draws planes with the same grid and options: from their images if they have one, otherwise from their cuts
+/// if they have some, and otherwise from their contours. The mean of cuts becomes a value as a covered part
+/// does. May be used by any number of threads at once.
 class PlaneDrawing {
   public:
     /// `images` is the grid of the images of planes. It is mirrored if `grid` is, and equal otherwise.
@@ -47,6 +48,7 @@ class PlaneDrawing {
 
   private:
     RasterAreas draw_image(const RunImage& image, const RowSink& sink) const;
+    RasterAreas draw_mean(std::span<const std::vector<Layer>> cuts, const RowSink& sink) const;
 
     PixelGrid grid_;
     RasterOptions options_;

@@ -5,11 +5,13 @@
 
 #include "fixtures/png_file.hpp"
 #include "fixtures/sample_layers.hpp"
+#include "raster/grey_values.hpp"
 #include "slices/images/layer_images.hpp"
 #include "temporary_folder.hpp"
 
 #include <gtest/gtest.h>
 
+#include <cstddef>
 #include <span>
 #include <string>
 #include <vector>
@@ -58,6 +60,37 @@ TEST(LayerImages, AHoleWhoseOuterContourIsOpenIsNoBody) {
     add_contour(builder, {{30, 0}, {34, 0}, {34, 5}}, false);
     const std::vector<Layer> apart{builder.finish(0, 0.5, 0, 1)};
     EXPECT_EQ(images.image(Plane(apart)).areas.covered, 10 * 10);
+}
+
+TEST(LayerImages, ShowTheMeanOfCuts) {
+    const PixelGrid grid{.width = 60, .height = 60, .u0 = 30, .v0 = 30};
+    const LayerStack layers = random_layers(4, 12, 50, {0, 0}, false);
+    const auto drawn = [&](const Plane& plane, const RasterOptions& options) {
+        return read_png(std::string(LayerImages(PlaneDrawing(grid, options, {})).image(plane).file->view()))
+            .values;
+    };
+    for (const RasterOptions& options : {RasterOptions{}, RasterOptions{.antialias = 1},
+                                         RasterOptions{.gamma = 2}, RasterOptions{.grey_curve = {{0, 60}}}}) {
+        const GreyValues values = grey_values(options);
+        Plane plane(layers.front());
+        std::vector<unsigned> sums(std::size_t{60} * 60);
+        for (std::size_t i = 0; i < 5; ++i) {
+            plane.cuts.push_back({layers[2 * i], layers[2 * i + 1]});
+            const auto cut = drawn(Plane(plane.cuts.back()), {.antialias = options.antialias});
+            for (std::size_t k = 0; k < sums.size(); ++k)
+                sums[k] += cut[k];
+        }
+        const auto mean = drawn(plane, options);
+        for (std::size_t k = 0; k < sums.size(); ++k) {
+            const unsigned value = values[(sums[k] + 2) / 5];
+            ASSERT_EQ(mean[k], options.antialias == 1 ? (sums[k] >= 3 * 255 ? 255 : 0) : value);
+        }
+        const double covered = LayerImages(PlaneDrawing(grid, options, {})).image(plane).areas.covered;
+        double sum = 0;
+        for (const std::vector<Layer>& cut : plane.cuts)
+            sum += LayerImages(PlaneDrawing(grid, options, {})).image(Plane(cut)).areas.covered;
+        EXPECT_NEAR(covered, sum / 5, 1e-9);
+    }
 }
 
 } // namespace
