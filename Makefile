@@ -244,6 +244,7 @@ read-meshes: build packages-rivals  ## compare with other readers of meshes: out
 
 resin: build packages-rivals  ## compare images for resin printers with PrusaSlicer's: out/resin/ (bench/README.md)
 	python3 -B -m bench.resin $(OPTIONS)
+	/usr/bin/python3 -B -m bench.resin.voxels
 
 out-of-core: build  ## slice a lattice of 5 GB with 1 GB of memory: out/out_of_core/ (bench/README.md)
 	@tools/install_packages.sh tools/packages-bench.txt

@@ -67,16 +67,24 @@ def parse(arguments):
     parser.add_argument("--lamella", default="build/lamella", help="the program (default: %(default)s)")
     parser.add_argument("--out", default="out/resin", help="folder of the report (default: %(default)s)")
     parser.add_argument("--parts", nargs="+", metavar="PART", help="which parts (default: some of all kinds)")
+    parser.add_argument("--resolution", default="2560x1620", type=pixels, help="of the display (default: an SL1S, %(default)s)")
+    parser.add_argument("--layer-height", type=float, help="in mm (default: that of the part, mostly 0.1)")
     parser.add_argument("--rounds", type=int, default=3, help="runs of each (default: %(default)s)")
     parser.add_argument("--timeout", type=float, default=300, help="seconds for one run (default: %(default)s)")
     return parser.parse_args(arguments)
+
+
+def pixels(text):
+    columns, rows = text.split("x")
+    return int(columns), int(rows)
 
 
 def measure(part, present, folder, options):
     """Runs all alternately, several times; one that fails is not tried again."""
     mesh = parts.make(part, options.lamella, folder)
     told = subprocess.run([options.lamella, "info", mesh, "--json"], capture_output=True, text=True, check=True).stdout
-    job = slicers.Job(mesh, part.layer_height, slicers.pixel_mm(json.loads(told)["bbox"]))
+    job = slicers.Job(mesh, options.layer_height or part.layer_height, options.resolution,
+                      slicers.pixel_mm(json.loads(told)["bbox"], options.resolution))
     runs = {slicer.name: [] for slicer in present}
     for _ in range(options.rounds):
         for slicer in present:
@@ -113,8 +121,8 @@ def cell_of(part, slicer, runs, output):
 
 def build_page(cells, done, present, here, options):
     page = Page("Pictures for resin printers beside PrusaSlicer's")
-    page.say(f"From an STL file to a job of {slicers.COLUMNS} x {slicers.ROWS} pixels with anti-aliasing, which the part fills "
-             "but for a tenth; layers of 0.1 mm, no supports, no pad, nothing made smaller or larger on purpose. Whole "
+    page.say(f"From an STL file to a job of {options.resolution[0]} x {options.resolution[1]} pixels with anti-aliasing, which the part fills "
+             "but for a tenth; layers of {options.layer_height or 0.1:g} mm, no supports, no pad, nothing made smaller or larger on purpose. Whole "
              f"processes in turn, medians of {options.rounds} runs; limit for one run: {options.timeout:g} s. The second row "
              "is the same part in runs of pixels, without compression, the third is lamella check, the fourth a slice file "
              "without pictures.",

@@ -6,7 +6,6 @@ from typing import Callable, Optional
 
 from bench.rivals.program import version
 
-COLUMNS, ROWS = 2560, 1620  # of an Original Prusa SL1S
 OURS = ("lamella", "goo", "check", "layers")
 
 
@@ -14,11 +13,12 @@ OURS = ("lamella", "goo", "check", "layers")
 class Job:
     mesh: Path
     layer_height: float
+    pixels: tuple[int, int]
     pixel_mm: float
 
     @property
     def display(self):
-        return f"{COLUMNS * self.pixel_mm:.6g}", f"{ROWS * self.pixel_mm:.6g}"
+        return tuple(f"{side * self.pixel_mm:.6g}" for side in self.pixels)
 
 
 @dataclass(frozen=True)
@@ -31,17 +31,17 @@ class Slicer:
     version: Callable[[], Optional[str]]  # None: not installed
 
 
-def pixel_mm(box):
+def pixel_mm(box, pixels):
     """Returns a size with few digits with which a part with this box fills the display except for a tenth."""
     (left, front, _), (right, back, _) = box
-    return float(f"{1.1 * max((right - left) / COLUMNS, (back - front) / ROWS):.3g}")
+    return float(f"{1.1 * max((right - left) / pixels[0], (back - front) / pixels[1]):.3g}")
 
 
 def lamella(program, name, title, suffix):
     """A job of images, or a slice file without images for the suffix .cli."""
     def command(job, output):
         return [program, "slice", job.mesh, "-o", output, "--layer-height", f"{job.layer_height:g}", "--progress", "none",
-                *(["--display-size", ",".join(job.display), "--resolution", f"{COLUMNS}x{ROWS}",
+                *(["--display-size", ",".join(job.display), "--resolution", "{}x{}".format(*job.pixels),
                    "--orientation", "landscape", "--mirror", "none"] if suffix != ".cli" else [])]
 
     return Slicer(name, title, suffix, suffix == ".sl1s", command, lambda: version([program, "--version"], r"(\d[\w.]*)"))
@@ -63,8 +63,8 @@ def prusa_slicer():
                 "--slice-closing-radius", "0", "--elefant-foot-compensation", "0",
                 "--layer-height", f"{job.layer_height:g}", "--initial-layer-height", f"{job.layer_height:g}",
                 "--bed-shape", f"0x0,{width}x0,{width}x{height},0x{height}", "--max-print-height", "1000",
-                "--display-width", width, "--display-height", height, "--display-pixels-x", COLUMNS,
-                "--display-pixels-y", ROWS, "--display-orientation", "landscape", "--no-display-mirror-x", "--no-display-mirror-y",
+                "--display-width", width, "--display-height", height, "--display-pixels-x", job.pixels[0],
+                "--display-pixels-y", job.pixels[1], "--display-orientation", "landscape", "--no-display-mirror-x", "--no-display-mirror-y",
                 "--center", f"{float(width) / 2:.9g},{float(height) / 2:.9g}", "--output", output, job.mesh]
 
     return Slicer("prusa-slicer", "PrusaSlicer", ".sl1", True, command,

@@ -7,8 +7,12 @@ work=$2
 minutes=${3:-10}
 corpus=$(dirname "$0")/corpus
 
-for target in mesh package layers arrays ilt pictures strategy; do
+for program in "$programs"/fuzz_*; do
+    [ -x "$program" ] && [ ! -d "$program" ] || continue
+    target=${program##*/fuzz_}
+    seeds=$corpus/$target
+    [ -d "$seeds" ] || seeds=$corpus/${target%%_*} # a target for one of several formats
     mkdir -p "$work/$target"
-    "$programs/fuzz_$target" -max_len=4096 -max_total_time=$((60 * minutes)) -fork="$(nproc)" \
-        -artifact_prefix="$work/$target-" "$work/$target" "$corpus/$target"
+    "$program" -max_len=4096 -max_total_time=$((60 * minutes)) -fork="$(nproc)" \
+        -artifact_prefix="$work/$target-" "$work/$target" "$seeds"
 done

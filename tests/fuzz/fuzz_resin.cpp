@@ -1,5 +1,5 @@
 // Any bytes as the images of a file for resin printers, behind its checksums and its large head. The first
-// byte chooses the format. The rest is the code of the only layer; of PNG files, the rows before compression;
+// byte chooses the format, unless the target is for one of them. The rest is the code of the only layer; of PNG files, the rows before compression;
 // of archives, their texts. The result is an error, or sound layers.
 
 #include "archive.hpp"
@@ -138,7 +138,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     if (size == 0)
         return 0;
     const std::string_view bytes(reinterpret_cast<const char*>(data), size);
-    const std::string file = file_of(data[0], bytes.substr(1));
+#ifdef LAMELLA_FUZZ_FORMAT
+    const unsigned format = LAMELLA_FUZZ_FORMAT;
+#else
+    const unsigned format = data[0];
+#endif
+    const std::string file = file_of(format, bytes.substr(1));
     try {
         const LayerFile layers =
             read_layers(std::as_bytes(std::span(file)), "fuzz", {.max_memory = 100'000'000}, {.threads = 1});
