@@ -3,6 +3,7 @@
 #include "lamella/jobs/plate.hpp"
 #include "lamella/jobs/print_check.hpp"
 #include "lamella/jobs/slice_file.hpp"
+#include "lamella/slices/layer_page.hpp"
 #include "lamella/system/whole_file.hpp"
 
 #include "command_line.hpp"
@@ -14,6 +15,7 @@
 #include "layering_options.hpp"
 #include "numbers.hpp"
 #include "options.hpp"
+#include "page_notes.hpp"
 #include "print_check_report.hpp"
 #include "repair_options.hpp"
 #include "run_warnings.hpp"
@@ -34,6 +36,7 @@ struct CheckArguments {
     std::string input;
     PrintCheckArguments checking;
     std::string stats;
+    std::string report;
     bool strict = false;
     bool json = false;
     LayeringOptions layering;
@@ -59,12 +62,29 @@ PrintCheck check_mesh(const CheckArguments& arguments, MeshFile mesh, Messages& 
     job.repair = arguments.repair;
     job.steps = arguments.making.steps();
     job.check = arguments.checking.options(job.max_memory);
+    if (!arguments.report.empty()) {
+        job.layer_statistics = job.steps.any(); // the page shows the changes of each layer
+        job.report = {.path = arguments.report, .page = page_options(arguments.input), .notes = run_notes};
+    }
     FileResult result = slice_file(job, load_plate(input, std::move(mesh), execution), execution);
     PrintCheck check = std::move(*result.check);
     result.check.reset(); // its findings are part of the output
     for (const std::string& warning : run_warnings(job, result))
         messages.warn(warning);
     return check;
+}
+
+/// Writes a page that shows the layers of a slice file, with marks of what the check found.
+void write_report(const CheckArguments& arguments, const LayerFile& file, const PrintCheck& check,
+                  Messages& messages, const Execution& execution) {
+    const auto page = open_layer_page(arguments.report, info_of(file), page_options(arguments.input));
+    write_planes(*page, file, true, false, messages, execution, arguments.max_memory());
+    PageNotes notes = file_notes(file);
+    notes.sections.push_back(print_check_section(check));
+    notes.locations = places_of(check);
+    page->add_notes(std::move(notes));
+    page->finish();
+    messages.warn_of(output_name(arguments.report), page->warnings());
 }
 
 /// Checks the layers of a slice file.
@@ -77,7 +97,10 @@ PrintCheck check_layers(const CheckArguments& arguments, const LayerFile& file, 
                                     "or the layers that the vectors are made of",
                                     file.path, one_line(part.label)));
     warn_about(file, file.warnings, false, messages);
-    return check_print(file, arguments.checking.options(arguments.max_memory()), execution);
+    PrintCheck check = check_print(file, arguments.checking.options(arguments.max_memory()), execution);
+    if (!arguments.report.empty())
+        write_report(arguments, file, check, messages, execution);
+    return check;
 }
 
 Json check_stats(const Command& command, const CheckArguments& arguments, const PrintCheck& check) {
@@ -115,7 +138,7 @@ int run_check(const CheckArguments& arguments, const Context& context) {
         Json object = {{"path", arguments.input}, {"ok", ok}, {"layers", check.layers.size()}};
         object.update(print_check_json(check));
         context.messages.result(json_text(object));
-    } else if (arguments.stats != "-") {
+    } else if (arguments.stats != "-" && arguments.report != "-") {
         context.messages.result(fmt::format(
             "{}: {}, {}\n{}", one_line(input_name(arguments.input)), counted(check.layers.size(), "layer"),
             ok ? "nothing found" : "not sound to print", print_check_text(check)));
@@ -133,7 +156,11 @@ Command check_command() {
     checking.options.push_back(output_file(
         "stats", "write the areas of every layer as JSON, too; - is standard output", arguments->stats));
     checking.options.push_back(
-        flag("strict", "end with exit code 4 if there is an island, a cup, a trap, an empty layer or an open contour",
+        output_file("report", "write a page that shows the layers, with a mark at everything that was found",
+                    arguments->report, page_extensions()));
+    checking.options.push_back(
+        flag("strict",
+             "end with exit code 4 if there is an island, a cup, a trap, an empty layer or an open contour",
              arguments->strict));
     checking.options.push_back(flag("json", "print JSON", arguments->json));
     return {
@@ -160,6 +187,8 @@ Command check_command() {
                    common_options(true)},
         .examples = {{"lamella check part.stl --layer-height 0.05", "before a part is printed"},
                      {"lamella check part.stl --rotate-x 35 --strict", "in a script, for another pose"},
+                     {"lamella check job.goo --report job.html",
+                      "the pixels of a job, with a page to look at"},
                      {"lamella check part.cli --touch 0.05 --json", "layers of a slice file"}},
         .run = [arguments](const Context& context) {
             return run_check(*arguments, context);

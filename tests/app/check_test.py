@@ -99,6 +99,19 @@ class Check(ProgramTest):
             self.assertEqual(pixels["layer"], mesh["layer"])
             self.assertAlmostEqual(pixels["volume_mm3"], mesh["volume_mm3"], delta=0.02 * mesh["volume_mm3"])
 
+    def test_a_page_marks_what_was_found_in_meshes_and_files(self):
+        self.succeed("slice", self.table(), "-o", "table.json", "--layer-height", "0.5")
+        self.succeed("slice", "table.stl", "-o", "table.goo", "--layer-height", "0.5", "--display-size", "20,10", "--resolution", "400x200")
+        for name in "table.stl", "table.json", "table.goo":
+            with self.subTest(name):
+                height = ["--layer-height", "0.5"] if name.endswith("stl") else []
+                self.assertIn("1 island", self.succeed("check", name, *height, "--report", "page.html").text)
+                page = self.path("page.html").read_text()
+                self.assertIn("Check of the print", page)
+                self.assertIn("then it joins the rest", page)
+        self.assertTrue(self.succeed("check", "table.json", "--report", "-").text.lower().startswith("<!doctype html>"))
+        self.fail_with(2, "both would go to standard output", "check", "table.json", "--report", "-", "--stats", "-")
+
     def test_slice_checks_while_it_slices(self):
         self.table()
         alone = self.succeed("check", "table.stl", "--layer-height", "0.5", "--json").json()
