@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cstddef>
 #include <limits>
 #include <string_view>
@@ -50,8 +51,8 @@ AlongXY<std::uint32_t> parse_pixels(const std::string& text) {
 }
 
 /// Parses "C:V,...".
-std::vector<GreyPoint> parse_grey_curve(const std::string& text) {
-    std::vector<GreyPoint> curve;
+GreyValues parse_grey_curve(const std::string& text) {
+    std::vector<GreyPoint> points;
     for (const std::string_view point : list_items(text)) {
         const std::size_t colon = point.find(':');
         if (colon == std::string_view::npos)
@@ -59,9 +60,28 @@ std::vector<GreyPoint> parse_grey_curve(const std::string& text) {
                         fmt::format("\"{}\" is not a covered part and a grey value, such as "
                                     "0.5:180",
                                     excerpt(point)));
-        curve.push_back({parse_number(point.substr(0, colon)), parse_number(point.substr(colon + 1))});
+        points.push_back({parse_number(point.substr(0, colon)), parse_number(point.substr(colon + 1))});
     }
-    return curve;
+    return grey_curve(points);
+}
+
+/// Parses "auto" or "#RRGGBB,...".
+std::vector<PartColour> parse_colours(const std::string& text) {
+    std::vector<PartColour> colours;
+    if (text == "auto")
+        return colours;
+    for (const std::string_view one : list_items(text)) {
+        std::uint32_t number = 0;
+        const bool hash = one.size() == 7 && one.front() == '#';
+        const char* const end = one.data() + one.size();
+        if (!hash || std::from_chars(one.data() + 1, end, number, 16).ptr != end)
+            throw Error(ErrorKind::usage,
+                        fmt::format("\"{}\" is not a colour, such as #e6194b", excerpt(one)));
+        colours.push_back({static_cast<std::uint8_t>(number >> 16),
+                           static_cast<std::uint8_t>(number >> 8 & 255),
+                           static_cast<std::uint8_t>(number & 255)});
+    }
+    return colours;
 }
 
 Option lengths(std::string name, std::string placeholder, std::string help,
@@ -114,11 +134,16 @@ OptionGroup image_options(ImageArguments& target) {
                      1, most_antialias, target.antialias);
     Option gamma =
         positive("gamma", "G", "the grey value is 255 x (covered part)^G (default: 1)", target.gamma);
-    Option grey_curve = row(
+    Option curve = row(
         "grey-curve", ValueKind::text, "C:V,...",
         "grey values V (0 to 255) of pixels whose covered part is C (0 to 1), interpolated between, instead "
         "of --gamma: 0:60,0.5:180 begins at 60 and ends at 255",
-        [&target](const std::string& text) { target.grey_curve = parse_grey_curve(text); });
+        [&target](const std::string& text) { target.grey_values = parse_grey_curve(text); });
+    Option colours =
+        row("part-colours", ValueKind::text, "auto|#RRGGBB,...",
+            "png, png-zip: a colour for each part, in a palette, for printers of voxels: pixels have "
+            "the colour of the part in which their middle lies, and are transparent elsewhere",
+            [&target](const std::string& text) { target.part_colours = parse_colours(text); });
     Option fade = count_within(
         "fade-layers",
         "number of layers in which the first exposure time fades to the normal one (default: 5; sl1: 10)", 0,
@@ -142,7 +167,7 @@ OptionGroup image_options(ImageArguments& target) {
                 {"landscape", "portrait"}, target.orientation),
          choice("mirror", "AXES", "axes along which the display is mirrored, as in PrusaSlicer",
                 {"none", "x", "y", "xy"}, target.mirror),
-         std::move(antialias), std::move(gamma), std::move(grey_curve),
+         std::move(antialias), std::move(gamma), std::move(curve), std::move(colours),
          input_file("resin",
                     "TOML file of exposures, movements of the plate and the resin; see lamella resin",
                     target.resin),
@@ -176,7 +201,11 @@ void ImageArguments::apply(const LayerFormat& format, LayerWriteOptions& options
     check(!mirror.empty(), "mirror", &LayerFormat::image);
     check(antialias.has_value(), "antialias", &LayerFormat::image);
     check(gamma.has_value(), "gamma", &LayerFormat::image);
-    check(!grey_curve.empty(), "grey-curve", &LayerFormat::image);
+    check(grey_values.has_value(), "grey-curve", &LayerFormat::image);
+    check(part_colours.has_value(), "part-colours", &LayerFormat::part_colours);
+    if (part_colours && (antialias.value_or(1) > 1 || gamma || grey_values || cuts.value_or(1) > 1))
+        throw Error(ErrorKind::usage, "--part-colours excludes --antialias, --gamma, --grey-curve and "
+                                      "--z-antialias: pixels have the colour of a part or none");
     check(cuts.has_value(), "z-antialias", &LayerFormat::image);
     check(!resin.empty(), "resin", &LayerFormat::exposure);
     check(exposure_s.has_value(), "exposure", &LayerFormat::exposure);
@@ -195,7 +224,9 @@ void ImageArguments::apply(const LayerFormat& format, LayerWriteOptions& options
     }
     image.raster.antialias = antialias.value_or(image.raster.antialias);
     image.raster.gamma = gamma.value_or(image.raster.gamma);
-    image.raster.grey_curve = grey_curve;
+    image.raster.grey_values = grey_values;
+    image.colour_parts = part_colours.has_value();
+    image.part_colours = part_colours.value_or(image.part_colours);
     if (!printer.empty())
         options.printer = &find_resin_printer(printer);
     options.resin = settings_on({});

@@ -24,7 +24,8 @@ struct ImageArguments {
     std::string mirror = {};
     std::optional<std::uint32_t> antialias = {};
     std::optional<double> gamma = {};
-    std::vector<GreyPoint> grey_curve = {};
+    std::optional<GreyValues> grey_values = {};
+    std::optional<std::vector<PartColour>> part_colours = {};
     std::optional<std::uint32_t> cuts = {}; ///< see FileJob::image_cuts
     std::optional<double> exposure_s = {};
     std::optional<double> first_exposure_s = {};

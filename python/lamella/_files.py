@@ -27,7 +27,7 @@ MESH_FORMATS = ("stl", "ply", "obj")
 OPTIONS = {
     "units_mm": "units", "short_form": "short_form", "pixel_mm": "picture", "pixels": "picture", "display_mm": "picture",
     "printer": "picture", "orientation": "picture", "mirror": "picture", "antialias": "picture", "gamma": "picture",
-    "grey_curve": "picture",
+    "grey_curve": "picture", "part_colours": "part_colours",
     "exposure_s": "exposure", "first_exposure_s": "exposure", "fade_layers": "exposure",
 }  # fmt: skip
 # Formats that store the heights of layers unchanged, or no heights. They accept layers without thickness.
@@ -61,7 +61,17 @@ def _grey_curve(name: str, points: Any) -> Tuple[Tuple[float, float], ...]:
     return check.several(name, points, None, words, one)
 
 
+def _part_colours(name: str, colours: Any) -> Tuple[Tuple[int, ...], ...]:
+    words = "True, or three whole numbers from 0 to 255 (red, green, blue) for each part"
+
+    def one(name: str, value: Any) -> Tuple[int, ...]:
+        return check.several(name, value, 3, words, partial(check.whole, most=255))
+
+    return () if colours is True else check.several(name, colours, None, words, one)
+
+
 GreyCurve = Annotated[Sequence[Tuple[float, float]], _grey_curve]
+PartColours = Annotated[Union[bool, Sequence[Tuple[int, int, int]]], _part_colours]
 Pixels = Annotated[Tuple[int, int], _columns_and_rows]
 Count = Annotated[int, partial(check.whole, most=2**32 - 1)]
 
@@ -175,6 +185,7 @@ def write(
     antialias: Optional[Antialias] = None,
     gamma: Optional[Positive] = None,
     grey_curve: Optional[GreyCurve] = None,
+    part_colours: Optional[PartColours] = None,
     exposure_s: Optional[Positive] = None,
     first_exposure_s: Optional[Positive] = None,
     fade_layers: Optional[Count] = None,
@@ -208,6 +219,8 @@ def write(
     gamma: exponent of grey values: 255 times the covered fraction to this power; 1 by default.
     grey_curve: pairs (covered fraction from 0 to 1, grey value from 0 to 255), instead of gamma. Values between two pairs
         are interpolated; [(0, 60)] makes 60 the darkest grey.
+    part_colours: (red, green, blue) from 0 to 255 for each part, or True for colours that are chosen (png, png-zip): each
+        pixel has the colour of the part in which its centre lies, and is transparent outside of all parts.
     exposure_s, first_exposure_s: exposure time in seconds of a layer, and of each of the first layers (formats of resin
         printers).
     fade_layers: number of layers over which the first exposure fades to the normal one; sl1, sl1s: 10 by default.
@@ -415,6 +428,7 @@ def convert(
     antialias: Optional[Antialias] = None,
     gamma: Optional[Positive] = None,
     grey_curve: Optional[GreyCurve] = None,
+    part_colours: Optional[PartColours] = None,
     exposure_s: Optional[Positive] = None,
     first_exposure_s: Optional[Positive] = None,
     fade_layers: Optional[Count] = None,

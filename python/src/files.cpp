@@ -215,9 +215,17 @@ LayerWriteOptions write_options(const py::dict& given) {
     }
     image.raster.antialias = option<unsigned>(given, "antialias").value_or(image.raster.antialias);
     image.raster.gamma = option<double>(given, "gamma").value_or(image.raster.gamma);
-    if (const auto curve = option<std::vector<std::pair<double, double>>>(given, "grey_curve"))
+    if (const auto curve = option<std::vector<std::pair<double, double>>>(given, "grey_curve")) {
+        std::vector<GreyPoint> points;
         for (const auto& [covered, value] : *curve)
-            image.raster.grey_curve.push_back({.covered = covered, .value = value});
+            points.push_back({.covered = covered, .value = value});
+        image.raster.grey_values = grey_curve(points);
+    }
+    if (const auto colours = option<std::vector<std::array<std::uint8_t, 3>>>(given, "part_colours")) {
+        image.colour_parts = true;
+        for (const auto& [red, green, blue] : *colours)
+            image.part_colours.push_back({.red = red, .green = green, .blue = blue});
+    }
     options.resin.exposure_s = option<double>(given, "exposure_s");
     options.resin.bottom_exposure_s = option<double>(given, "first_exposure_s");
     options.resin.transition_layers = option<std::uint32_t>(given, "fade_layers");
@@ -228,10 +236,11 @@ LayerWriteOptions write_options(const py::dict& given) {
 
 /// Returns the formats that take an option of LayerWriteOptions, by its name in LayerFormat.
 std::vector<std::string> formats_with(const std::string& name) {
-    const auto takes = name == "units"        ? &LayerFormat::units
-                       : name == "short_form" ? &LayerFormat::short_form
-                       : name == "exposure"   ? &LayerFormat::exposure
-                                              : &LayerFormat::image;
+    const auto takes = name == "units"          ? &LayerFormat::units
+                       : name == "short_form"   ? &LayerFormat::short_form
+                       : name == "part_colours" ? &LayerFormat::part_colours
+                       : name == "exposure"     ? &LayerFormat::exposure
+                                                : &LayerFormat::image;
     std::vector<std::string> found;
     for (const LayerFormat& format : layer_formats())
         if (format.*takes)

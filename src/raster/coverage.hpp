@@ -43,7 +43,7 @@ class CoverageRows {
   public:
     CoverageRows(std::span<const Layer> parts, const PixelGrid& grid, const RasterOptions& options)
         : pieces_(parts, grid), width_(grid.width), strips_(options.antialias),
-          coverage_(grid.width, 1, grey_values(options)) {}
+          coverage_(grid.width, 1, values_of(options)) {}
 
     [[nodiscard]] DrawnRow draw(std::uint32_t row);
     /// Returns the area that no row shows; the rows show all.

@@ -6,7 +6,9 @@
 
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
+#include <span>
 
 namespace lamella {
 
@@ -15,7 +17,7 @@ namespace {
 constexpr double white = 255;
 
 /// Returns the value of a covered part by the points of a curve.
-double value_on(const std::vector<GreyPoint>& curve, double covered) {
+double value_on(std::span<const GreyPoint> curve, double covered) {
     GreyPoint below{0, 0};
     for (const GreyPoint& point : curve) {
         if (point.covered == covered)
@@ -49,27 +51,40 @@ void check_point(const GreyPoint& point, double below) {
 
 } // namespace
 
+GreyValues grey_curve(std::span<const GreyPoint> points) {
+    double below = -std::numeric_limits<double>::infinity();
+    for (const GreyPoint& point : points) {
+        check_point(point, below);
+        below = point.covered;
+    }
+    GreyValues values{};
+    for (std::size_t i = 1; i < values.size(); ++i)
+        values[i] = static_cast<std::uint8_t>(std::lround(value_on(points, static_cast<double>(i) / white)));
+    return values;
+}
+
 void check_grey(const RasterOptions& options) {
     if (!(options.gamma > 0) || !std::isfinite(options.gamma))
         throw Error(ErrorKind::usage,
                     fmt::format("a gamma of {} makes no values; choose a positive number", options.gamma));
-    if (!options.grey_curve.empty() && options.gamma != 1)
-        throw Error(ErrorKind::usage, "a grey curve and a gamma exclude each other; choose one of them");
-    double below = -std::numeric_limits<double>::infinity();
-    for (const GreyPoint& point : options.grey_curve) {
-        check_point(point, below);
-        below = point.covered;
-    }
+    if (!options.grey_values)
+        return;
+    if (options.gamma != 1)
+        throw Error(ErrorKind::usage, "grey values and a gamma exclude each other; choose one of them");
+    if (options.grey_values->front() != 0 || options.grey_values->back() != 255)
+        throw Error(ErrorKind::usage,
+                    fmt::format("grey values from {} to {}: the first one must be 0, for pixels without "
+                                "material, and the last one 255",
+                                options.grey_values->front(), options.grey_values->back()));
 }
 
-GreyValues grey_values(const RasterOptions& options) {
+GreyValues values_of(const RasterOptions& options) {
+    if (options.grey_values)
+        return *options.grey_values;
     GreyValues values{};
-    for (std::size_t i = 1; i < values.size(); ++i) {
-        const double covered = static_cast<double>(i) / white;
-        const double value = options.grey_curve.empty() ? white * std::pow(covered, options.gamma)
-                                                        : value_on(options.grey_curve, covered);
-        values[i] = static_cast<std::uint8_t>(std::lround(value));
-    }
+    for (std::size_t i = 0; i < values.size(); ++i)
+        values[i] = static_cast<std::uint8_t>(
+            std::lround(white * std::pow(static_cast<double>(i) / white, options.gamma)));
     return values;
 }
 

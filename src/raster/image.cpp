@@ -68,7 +68,7 @@ RasterAreas rasterise(std::span<const Layer> parts, const PixelGrid& grid, const
     if (options.antialias == 1)
         return draw(CentreRows(parts, grid), grid.height, sink);
     if (options.winds_once)
-        return draw(SummedRows(parts, grid, grey_values(options)), grid.height, sink);
+        return draw(SummedRows(parts, grid, values_of(options)), grid.height, sink);
     return draw(CoverageRows(parts, grid, options), grid.height, sink);
 }
 

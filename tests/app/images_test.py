@@ -137,6 +137,42 @@ class Images(ProgramTest):
                         grey += 0 < found < 255
                 self.assertGreater(grey, 600)
 
+    def test_black_and_white_takes_one_bit(self):
+        for name, bits in [("grey", 8), ("white", 1)]:
+            self.succeed("slice", self.box(), "-o", name, "--format", "png", "--layer-height", "5", "--antialias", str(bits))
+            image = Image(self.bytes_of(f"{name}/00000.png"))
+            self.assertEqual((image.bits, image.width, image.covered()), (bits, 400, 240000))
+            self.assertEqual(json.loads(self.bytes_of(f"{name}/manifest.json"))["bits"], bits)
+        self.succeed("slice", "box.stl", "-o", "white.zip", "--format", "png-zip", "--antialias", "1", "--layer-height", "5")
+        self.assertAlmostEqual(self.succeed("info", "white.zip", "--json").json()["volume_mm3"], 6000, delta=1)
+        self.succeed("slice", "box.stl", "-o", "job.sl1", "--antialias", "1", "--layer-height", "5")
+        self.assertEqual(Image(self.archive("job.sl1").read("job00000.png")).bits, 8)
+
+    def test_parts_have_their_colours(self):
+        for i in range(4):
+            self.succeed("make", "box", "--size", "4", "-o", f"{i}.stl")
+        plate = [word for i in range(4) for word in (f"{i}.stl", "--translate", f"{3 * i},0,0", "--label", f"part {i}")]
+        colours = ["#ff0000", "#00ff00", "#0000ff", "#ff0000"]
+        job = ["slice", *plate, "--layer-height", "2", "--pixel-size", "0.5"]
+        self.succeed(*job, "--format", "png", "-o", "out", "--part-colours", ",".join(colours))
+        image = Image(self.bytes_of("out/00001.png"))
+        self.assertEqual((image.bits, image.palette), (4, [(0, 0, 0), (255, 0, 0), (0, 255, 0), (0, 0, 255), (255, 0, 0)]))
+        self.assertEqual(image.rows, [bytes([1] * 8 + [2] * 6 + [3] * 6 + [4] * 6)] * 8)
+        manifest = json.loads(self.bytes_of("out/manifest.json"))
+        self.assertEqual(manifest["parts"], [{"label": f"part {i}", "colour": colours[i]} for i in range(4)])
+        self.assertEqual(manifest["layers"][0]["area_mm2"], 4 * 13)
+        self.succeed(*job, "-o", "out.zip", "--part-colours", "auto")
+        palette = Image(self.archive("out.zip").read("00000.png")).palette
+        self.assertEqual(len(set(palette)), 5)
+        self.assertAlmostEqual(self.succeed("info", "out.zip", "--json").json()["volume_mm3"], 4 * 4 * 13, delta=1e-6)
+        self.fail_with(2, "1 colours for 4 parts", *job, "-o", "x.zip", "--part-colours", "#123456")
+        self.fail_with(2, "black .* is the colour of pixels without material", *job, "-o", "x.zip", "--part-colours",
+                       "#123456,#000000,#654321,#123456")
+        self.fail_with(2, '"red" is not a colour, such as #e6194b', *job, "-o", "x.zip", "--part-colours", "red")
+        self.fail_with(2, "excludes --antialias", *job, "-o", "x.zip", "--part-colours", "auto", "--antialias", "4")
+        self.fail_with(2, "--part-colours goes with the formats png, png-zip, not with sl1", *job, "-o", "x.sl1", "--part-colours", "auto")
+        self.fail_with(2, "do not tell which part", "convert", "out.zip", "y.zip", "--format", "png-zip", "--part-colours", "auto")
+
     def test_a_layer_that_covers_more_than_half_the_display_is_a_slow_one(self):
         for size, slow in (("20,9.9,1", "0"), ("20,10.1,1", "10")):
             self.succeed("slice", self.box(size=size), "-o", "part.sl1", "--display-size", "20,20",

@@ -246,6 +246,8 @@ TEXTS = [
      "gamma goes with the formats png, png-zip, sl1, sl1s, goo, ctb, cbddlp, anycubic, chitubox-zip, nanodlp, not with cli"),
     (lambda: lamella.write("x.zip", stack(), grey_curve=[(0, 60, 1)]), ValueError,
      "grey_curve: expected pairs of two numbers (covered part, grey value), found 3 values"),
+    (lambda: lamella.write("x.zip", stack(), part_colours=[(0, 60)]), ValueError,
+     "part_colours: expected True, or three whole numbers from 0 to 255 (red, green, blue) for each part, found 2 values"),
     (lambda: lamella.write("x.svg", stack(), units_mm=2), ValueError, "units_mm goes with the formats cli, cli-ascii, ilt, 3mf-toolpath, not with svg"),
     (lambda: lamella.write("x.zip", stack(), exposure_s=2, format="png-zip"), ValueError,
      "exposure_s goes with the formats sl1, sl1s, goo, ctb, cbddlp, anycubic, chitubox-zip, nanodlp, not with png-zip"),

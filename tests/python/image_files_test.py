@@ -9,6 +9,8 @@ IMAGES = [
     ("png-zip", {"pixels": (90, 80), "display_mm": (45, 40)}, ["--resolution", "90x80", "--display-size", "45,40"]),
     ("png-zip", {"pixel_mm": (0.2, 0.3), "antialias": 1}, ["--pixel-size", "0.2,0.3", "--antialias", 1]),
     ("png-zip", {"pixel_mm": 0.5, "grey_curve": [(0, 60), (0.5, 180)]}, ["--pixel-size", 0.5, "--grey-curve", "0:60,0.5:180"]),
+    ("png-zip", {"part_colours": [(255, 0, 128)]}, ["--part-colours", "#ff0080"]),
+    ("png-zip", {"part_colours": True}, ["--part-colours", "auto"]),
     ("png-zip", {"pixel_mm": 0.5, "orientation": "portrait", "mirror": "xy", "gamma": 2.5},
      ["--pixel-size", 0.5, "--orientation", "portrait", "--mirror", "xy", "--gamma", 2.5]),
     ("png-zip", {"pixel_mm": 0.5, "mirror": "y"}, ["--pixel-size", 0.5, "--mirror", "y"]),

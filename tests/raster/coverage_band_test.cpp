@@ -30,7 +30,7 @@ double slope_in_column(double from, double to, double column) {
 }
 
 TEST(CoverageBand, IsEmptyToBeginWithAndAfterItWasTaken) {
-    CoverageBand row(100, 1, grey_values({}));
+    CoverageBand row(100, 1, values_of({}));
     EXPECT_EQ(values(row), std::vector<double>(100, 0));
     row.begin_along(0, 10, 10, 1);
     EXPECT_EQ(row.take(0).size(), 2U);
@@ -40,7 +40,7 @@ TEST(CoverageBand, IsEmptyToBeginWithAndAfterItWasTaken) {
 }
 
 TEST(CoverageBand, HoldsRunsThatDiffer) {
-    CoverageBand row(70, 1, grey_values({}));
+    CoverageBand row(70, 1, values_of({}));
     row.begin_along(0, 0, 0, 1);
     row.begin_along(0, 64, 64, -0.5);
     row.begin_along(0, 65, 65, 0);
@@ -54,7 +54,7 @@ TEST(CoverageBand, HoldsRunsThatDiffer) {
 TEST(CoverageBand, CoversEachColumnOfASlopeAsTheIntegralSays) {
     Random random(1);
     constexpr std::uint32_t width = 24;
-    CoverageBand row(width, 1, grey_values({}));
+    CoverageBand row(width, 1, values_of({}));
     for (int round = 0; round < 20000; ++round) {
         double from = random.real(-12, 36);
         double to = random.real(-12, 36);
@@ -80,7 +80,7 @@ TEST(CoverageBand, CoversEachColumnOfASlopeAsTheIntegralSays) {
 TEST(CoverageBand, IsFullBetweenSlopesOfManyWeights) {
     Random random(2);
     for (int strips = 1; strips <= 64; ++strips) {
-        CoverageBand row(50, 1, grey_values({}));
+        CoverageBand row(50, 1, values_of({}));
         for (int i = 0; i < strips; ++i) {
             row.begin_along(0, random.real(2, 5), random.real(5, 9), 1.0 / strips);
             row.begin_along(0, random.real(40, 43), random.real(43, 48), -1.0 / strips);
@@ -92,7 +92,7 @@ TEST(CoverageBand, IsFullBetweenSlopesOfManyWeights) {
 }
 
 TEST(CoverageBand, StaysWithinItsValues) {
-    CoverageBand row(4, 1, grey_values({}));
+    CoverageBand row(4, 1, values_of({}));
     row.begin_along(0, 0, 0, -3);
     row.begin_along(0, 1, 1, 7);
     EXPECT_EQ(values(row), (std::vector<double>{0, 255, 255, 255}));
@@ -100,7 +100,7 @@ TEST(CoverageBand, StaysWithinItsValues) {
 }
 
 TEST(CoverageBand, HasRowsWithMaterialOfTheirOwnAndOfAllRows) {
-    CoverageBand band(4, 3, grey_values({}));
+    CoverageBand band(4, 3, values_of({}));
     band.begin_in_all(1, 0.5);
     band.begin_along(1, 2, 2, 0.5);
     band.begin_within(2, 3, 0.5, 0.25);
@@ -122,7 +122,7 @@ TEST(CoverageBand, HasMaterialAlongAnEdgeInEachRowThatItReaches) {
     Random random(6);
     constexpr std::uint32_t top = 5;
     constexpr std::uint32_t rows = 4;
-    CoverageBand band(20, rows, grey_values({}));
+    CoverageBand band(20, rows, values_of({}));
     for (int round = 0; round < 2000; ++round) {
         const ImageEdge edge({random.real(-5, 25), random.real(0, 14)},
                              {random.real(-5, 25), random.real(0, 14)});
@@ -144,7 +144,7 @@ TEST(CoverageBand, HasMaterialAlongAnEdgeInEachRowThatItReaches) {
 }
 
 TEST(CoverageBand, HasTheValuesOfItsTable) {
-    const GreyValues values = grey_values({.gamma = 2.2});
+    const GreyValues values = values_of({.gamma = 2.2});
     for (int part = 0; part <= 255; ++part) {
         CoverageBand row(1, 1, values);
         row.begin_along(0, 0, 0, part / 255.0);

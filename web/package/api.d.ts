@@ -152,6 +152,8 @@ export interface WriteOptions extends CallOptions {
   gamma?: number;
   /** Grey values (0 to 255) of pixels by their covered part (0 to 1), interpolated between, instead of gamma. */
   greyCurve?: (readonly [covered: number, value: number])[];
+  /** png, png-zip: 'auto', or '#rrggbb' for each part: pixels have the colour of the part in which their middle lies. */
+  partColours?: 'auto' | string[];
   exposure?: number;
   firstExposure?: number;
   fadeLayers?: number;

@@ -5,8 +5,10 @@
 #include "lamella/contour/layer.hpp"
 #include "lamella/contour/run_image.hpp"
 
+#include <array>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -24,6 +26,15 @@ struct GreyPoint {
 
     friend bool operator==(const GreyPoint&, const GreyPoint&) = default;
 };
+
+/// The value of a pixel by its coverage, in steps of 1/255.
+using GreyValues = std::array<std::uint8_t, 256>;
+
+/// Returns the values on a curve through these points, whose covered parts must ascend. Values between two
+/// points are interpolated. Unless there are other points at these parts, the curve begins at 0:0 and ends at
+/// 1:255. Pixels without material always have the value 0, so a first point of 0:60 makes 60 the darkest
+/// grey. Throws Error{usage} for impossible points, and if 1 does not get the value 255.
+[[nodiscard]] GreyValues grey_curve(std::span<const GreyPoint> points);
 
 struct RasterOptions {
     /// Number of strips into which a row of pixels is divided where exact coverage would take too long. A
@@ -44,12 +55,9 @@ struct RasterOptions {
     bool winds_once = false;
     /// The value of a pixel is 255 (v / 255)^gamma, rounded, where v is 255 times its coverage, rounded.
     double gamma = 1;
-    /// Points of a curve that gives the value of a pixel instead of `gamma`, which must then be 1. The
-    /// covered parts ascend; values between two points are interpolated. Unless there are other points at
-    /// these parts, the curve begins at 0:0 and ends at 1:255. Pixels without material always have the value
-    /// 0, so a first point of 0:60 makes 60 the darkest grey. Pixels that are covered entirely have the value
-    /// 255.
-    std::vector<GreyPoint> grey_curve = {};
+    /// If set, the value of a pixel is grey_values[v] instead, and `gamma` must be 1. The first value must be
+    /// 0, for pixels without material, and the last one 255.
+    std::optional<GreyValues> grey_values = {};
 };
 
 /// Consecutive pixels of a row with the same value, from the end of the previous run up to `end`.

@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 LAMELLA_API_BEGIN
 namespace lamella {
@@ -15,6 +16,15 @@ template <typename T>
 struct AlongXY {
     T x;
     T y;
+};
+
+/// The colour of a part.
+struct PartColour {
+    std::uint8_t red = 0;
+    std::uint8_t green = 0;
+    std::uint8_t blue = 0;
+
+    friend bool operator==(const PartColour&, const PartColour&) = default;
 };
 
 /// Options of all formats with images: the pixels of the image, and how they map to the part.
@@ -36,6 +46,12 @@ struct ImageOptions {
     std::optional<bool> mirror_y = {};
 
     RasterOptions raster = {};
+
+    /// If true, images of png and png-zip have a palette: each pixel has the colour of the part in which its
+    /// centre lies, of several parts the first, and is transparent outside of all. `raster` does not apply.
+    bool colour_parts = false;
+    /// The colour of each part; if there are none, colours are chosen. Black is the background.
+    std::vector<PartColour> part_colours{};
 };
 
 } // namespace lamella

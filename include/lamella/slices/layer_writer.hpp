@@ -155,6 +155,7 @@ struct LayerFormat {
     bool units = false;
     bool short_form = false;
     bool image = false;
+    bool part_colours = false; ///< of ImageOptions; other formats with images ignore them
     bool exposure = false;
 };
 

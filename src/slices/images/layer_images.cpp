@@ -6,11 +6,12 @@
 #include "container/inflate.hpp"
 #include "contour/box2.hpp"
 #include "raster/grey_values.hpp"
-#include "slices/images/png.hpp"
 
 #include <algorithm>
 #include <cassert>
 #include <cstddef>
+#include <memory>
+#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -131,25 +132,43 @@ void append_rows(std::vector<ImageRun>& runs, std::span<const PixelRun> row, std
             append_run(runs, {first + std::uint64_t{i} * width + run.end, run.value});
 }
 
-/// Returns the mean of images of the same size, with these values for means in steps of 1/255.
-RunImage mean_of(std::span<const RunImage> images, const GreyValues& values) {
-    RunImage mean{images.front().width, images.front().height, {}};
+/// Returns an image of the size of others, whose pixels have the value of value_of(pixels of the others).
+template <class ValueOf>
+RunImage merged_images(std::span<const RunImage> images, const ValueOf& value_of) {
+    RunImage made{images.front().width, images.front().height, {}};
     std::vector<std::size_t> at(images.size()); // the run of each image that contains the next pixel
-    const auto count = static_cast<std::uint32_t>(images.size());
-    for (std::uint64_t pixel = 0; pixel < mean.pixels();) {
-        std::uint64_t end = mean.pixels();
-        std::uint32_t sum = 0;
+    std::vector<std::uint8_t> values(images.size());
+    for (std::uint64_t pixel = 0; pixel < made.pixels();) {
+        std::uint64_t end = made.pixels();
         for (std::size_t i = 0; i < images.size(); ++i) {
             const ImageRun& run = images[i].runs[at[i]];
             end = std::min(end, run.end);
-            sum += run.value;
+            values[i] = run.value;
         }
-        append_run(mean.runs, {end, values[(sum + count / 2) / count]});
+        append_run(made.runs, {end, value_of(values)});
         for (std::size_t i = 0; i < images.size(); ++i)
             at[i] += images[i].runs[at[i]].end == end ? 1 : 0;
         pixel = end;
     }
-    return mean;
+    return made;
+}
+
+/// Returns the mean of images of the same size, with these values for means in steps of 1/255.
+RunImage mean_of(std::span<const RunImage> images, const GreyValues& values) {
+    return merged_images(images, [&values](std::span<const std::uint8_t> pixels) {
+        const auto count = static_cast<std::uint32_t>(pixels.size());
+        const std::uint32_t sum = std::accumulate(pixels.begin(), pixels.end(), std::uint32_t{0});
+        return values[(sum + count / 2) / count];
+    });
+}
+
+/// Returns the image of some parts.
+RunImage drawn(std::span<const Layer> parts, const PixelGrid& grid, const RasterOptions& options,
+               RasterAreas& areas) {
+    RunImage image{grid.width, grid.height, {}};
+    areas = draw_parts(parts, grid, options,
+                       [&image](auto row, auto times) { append_rows(image.runs, row, times, image.width); });
+    return image;
 }
 
 double value_of(std::span<const PixelRun> row) {
@@ -180,19 +199,17 @@ RasterAreas PlaneDrawing::draw(const Plane& plane, const RowSink& sink) const {
 RasterAreas PlaneDrawing::draw_mean(std::span<const std::vector<Layer>> cuts, const RowSink& sink) const {
     RasterOptions linear = options_; // the values of cuts are their coverage
     linear.gamma = 1;
-    linear.grey_curve.clear();
+    linear.grey_values.reset();
     RasterAreas mean;
     std::vector<RunImage> images;
     const double share = 1 / static_cast<double>(cuts.size());
     for (const std::vector<Layer>& cut : cuts) {
-        RunImage& image = images.emplace_back(RunImage{grid_.width, grid_.height, {}});
-        const RasterAreas areas = draw_parts(cut, grid_, linear, [&image](auto row, auto times) {
-            append_rows(image.runs, row, times, image.width);
-        });
+        RasterAreas areas;
+        images.push_back(drawn(cut, grid_, linear, areas));
         mean.covered += share * areas.covered;
         mean.unseen += share * areas.unseen;
     }
-    static_cast<void>(draw_image(mean_of(images, grey_values(options_)), sink));
+    static_cast<void>(draw_image(mean_of(images, values_of(options_)), sink));
     return mean;
 }
 
@@ -220,14 +237,54 @@ RasterAreas PlaneDrawing::draw_image(const RunImage& image, const RowSink& sink)
     return areas;
 }
 
+RasterAreas draw_part_numbers(std::span<const Layer> parts, const PixelGrid& grid, const RowSink& sink) {
+    const PlaneDrawing drawing(grid, {}, {});
+    std::vector<RunImage> images;
+    std::vector<std::uint8_t> numbers;
+    RasterAreas all;
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        if (parts[i].rings == 0)
+            continue;
+        RasterAreas areas;
+        images.push_back(drawn(parts.subspan(i, 1), grid, {.antialias = 1}, areas));
+        numbers.push_back(static_cast<std::uint8_t>(i + 1));
+        all.unseen += areas.unseen;
+    }
+    if (images.empty())
+        return drawing.draw(Plane(), sink);
+    const RunImage numbered =
+        merged_images(images, [&](std::span<const std::uint8_t> pixels) -> std::uint8_t {
+            const auto first =
+                std::find_if(pixels.begin(), pixels.end(), [](std::uint8_t value) { return value > 0; });
+            return first == pixels.end() ? 0 : numbers[static_cast<std::size_t>(first - pixels.begin())];
+        });
+    Plane plane;
+    plane.image = std::make_shared<RunImage>(numbered);
+    drawing.draw(plane, [&](std::span<const PixelRun> row, std::uint32_t times) {
+        std::uint32_t from = 0;
+        for (const PixelRun& run : row) {
+            if (run.value > 0)
+                all.covered += static_cast<double>(run.end - from) * times;
+            from = run.end;
+        }
+        sink(row, times);
+    });
+    return all;
+}
+
 // Draws an empty image so that impossible options are reported before the first layer.
-LayerImages::LayerImages(const PlaneDrawing& drawing) : drawing_(drawing) {
+LayerImages::LayerImages(const PlaneDrawing& drawing, PngPixels pixels)
+    : drawing_(drawing), pixels_(std::move(pixels)) {
     static_cast<void>(image(Plane()));
 }
 
 LayerImage LayerImages::image(const Plane& plane) const {
-    PngEncoder encoder(grid().width, grid().height);
-    const RasterAreas areas = drawing_.draw(plane, [&](auto row, auto times) { encoder.add(row, times); });
+    PngEncoder encoder(grid().width, grid().height, pixels_);
+    const RowSink encode = [&](auto row, auto times) {
+        encoder.add(row, times);
+    };
+    const RasterAreas areas = pixels_.palette.empty() ? drawing_.draw(plane, encode)
+                                                      : draw_part_numbers(plane.polylines, grid(), encode);
     const std::shared_ptr<ByteBuffer> file = buffers_->take();
     encoder.finish(*file);
     return {file, crc32_of(file->view()), areas};

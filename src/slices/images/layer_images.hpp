@@ -8,6 +8,7 @@
 
 #include "container/byte_buffer.hpp"
 #include "container/zip_writer.hpp"
+#include "slices/images/png.hpp"
 
 #include <cstdint>
 #include <memory>
@@ -56,19 +57,26 @@ class PlaneDrawing {
     bool mirror_rows_ = false;
 };
 
-/// Makes images with the same grid and options. May be used by any number of threads at once.
+/// Draws the number of the part, from 1 on, in which the centre of each pixel lies, of several parts the
+/// first; 0 outside of all. At most 255 parts.
+RasterAreas draw_part_numbers(std::span<const Layer> parts, const PixelGrid& grid, const RowSink& sink);
+
+/// Makes images with the same grid and options. With a palette, pixels are numbers of parts. May be used by
+/// any number of threads at once.
 class LayerImages {
   public:
-    explicit LayerImages(const PlaneDrawing& drawing);
+    explicit LayerImages(const PlaneDrawing& drawing, PngPixels pixels = {});
 
     /// Draws all parts into one image.
     [[nodiscard]] LayerImage image(const Plane& plane) const;
 
     [[nodiscard]] const PixelGrid& grid() const noexcept { return drawing_.grid(); }
     [[nodiscard]] const RasterOptions& options() const noexcept { return drawing_.options(); }
+    [[nodiscard]] const PngPixels& pixels() const noexcept { return pixels_; }
 
   private:
     PlaneDrawing drawing_;
+    PngPixels pixels_;
     std::shared_ptr<BufferPool> buffers_ = std::make_shared<BufferPool>();
 };
 

@@ -11,7 +11,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
@@ -62,6 +64,30 @@ TEST(LayerImages, AHoleWhoseOuterContourIsOpenIsNoBody) {
     EXPECT_EQ(images.image(Plane(apart)).areas.covered, 10 * 10);
 }
 
+TEST(LayerImages, NumberTheFirstPartInWhichAPixelLies) {
+    const PixelGrid grid{.width = 60, .height = 60, .u0 = 30, .v0 = 30};
+    const LayerStack layers = random_layers(5, 12, 50, {0, 0}, false);
+    std::vector<std::uint8_t> expected(std::size_t{60} * 60);
+    for (std::size_t part = layers.size(); part-- > 0;) {
+        const GreyImage image = paint({&layers[part], 1}, grid, {.antialias = 1});
+        for (std::size_t k = 0; k < expected.size(); ++k)
+            if (image.values[k] > 0)
+                expected[k] = static_cast<std::uint8_t>(part + 1);
+    }
+    std::vector<std::uint8_t> numbers;
+    const RasterAreas areas = draw_part_numbers(layers, grid, [&](auto row, auto times) {
+        for (std::uint32_t i = 0; i < times; ++i)
+            for (std::uint32_t k = 0, run = 0; k < 60; ++k) {
+                run += row[run].end == k ? 1 : 0;
+                numbers.push_back(row[run].value);
+            }
+    });
+    EXPECT_EQ(numbers, expected);
+    EXPECT_EQ(areas.covered,
+              static_cast<double>(std::count_if(expected.begin(), expected.end(),
+                                                [](std::uint8_t number) { return number > 0; })));
+}
+
 TEST(LayerImages, ShowTheMeanOfCuts) {
     const PixelGrid grid{.width = 60, .height = 60, .u0 = 30, .v0 = 30};
     const LayerStack layers = random_layers(4, 12, 50, {0, 0}, false);
@@ -69,9 +95,10 @@ TEST(LayerImages, ShowTheMeanOfCuts) {
         return read_png(std::string(LayerImages(PlaneDrawing(grid, options, {})).image(plane).file->view()))
             .values;
     };
-    for (const RasterOptions& options : {RasterOptions{}, RasterOptions{.antialias = 1},
-                                         RasterOptions{.gamma = 2}, RasterOptions{.grey_curve = {{0, 60}}}}) {
-        const GreyValues values = grey_values(options);
+    for (const RasterOptions& options :
+         {RasterOptions{}, RasterOptions{.antialias = 1}, RasterOptions{.gamma = 2},
+          RasterOptions{.grey_values = grey_curve(std::vector<GreyPoint>{{0, 60}})}}) {
+        const GreyValues values = values_of(options);
         Plane plane(layers.front());
         std::vector<unsigned> sums(std::size_t{60} * 60);
         for (std::size_t i = 0; i < 5; ++i) {

@@ -5,6 +5,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -49,6 +53,52 @@ TEST(Png, IsReadByLibpngAsTheImageThatItIs) {
             ASSERT_TRUE(file.values == paint({&layer, 1}, grid, {.antialias = antialias}).values)
                 << "seed " << seed;
         }
+    }
+}
+
+/// The pixels of a row of bytes.
+std::vector<std::uint8_t> unpacked(const std::uint8_t* row, std::uint32_t width, unsigned bits) {
+    std::vector<std::uint8_t> pixels;
+    for (std::uint32_t i = 0; i < width; ++i)
+        pixels.push_back(static_cast<std::uint8_t>(
+            row[std::uint64_t{i} * bits / 8] >> (8 - bits - i * bits % 8) & ((1 << bits) - 1)));
+    return pixels;
+}
+
+TEST(Png, PacksPixelsOfFewBits) {
+    for (std::uint64_t seed = 0; seed < 200; ++seed) {
+        Random random(seed);
+        PngPixels kind{.bits = std::array{1U, 1U, 2U, 4U, 8U}[seed % 5]};
+        if (seed % 5 > 0)
+            kind.palette.resize(std::size_t{1} << kind.bits, {10, 20, 30});
+        const auto width = static_cast<std::uint32_t>(random.integer(1, seed < 100 ? 20 : 300));
+        PngEncoder encoder(width, 40, kind);
+        std::vector<std::vector<std::uint8_t>> expected;
+        while (expected.size() < 40) {
+            std::vector<PixelRun> row;
+            std::vector<std::uint8_t> pixels;
+            for (std::uint32_t end = 0; end < width;) {
+                end = std::min<std::uint32_t>(width, end + static_cast<std::uint32_t>(random.integer(1, 40)));
+                const auto code = static_cast<std::uint8_t>(random.integer(0, (1 << kind.bits) - 1));
+                if (!pixels.empty() && pixels.back() == code)
+                    row.pop_back();
+                row.push_back({end, kind.palette.empty() ? static_cast<std::uint8_t>(255 * code) : code});
+                pixels.resize(end, code);
+            }
+            const auto times = static_cast<std::uint32_t>(random.integer(
+                1, std::min<std::int64_t>(3, 40 - static_cast<std::int64_t>(expected.size()))));
+            encoder.add(row, times);
+            expected.insert(expected.end(), times, pixels);
+        }
+        ByteBuffer out;
+        encoder.finish(out);
+        const PngFile file = read_png(std::string(out.view()));
+        ASSERT_EQ(file.error, "");
+        EXPECT_EQ(file.bits, static_cast<int>(kind.bits));
+        EXPECT_EQ(file.colour_type, kind.palette.empty() ? 0 : 3);
+        const std::size_t row_bytes = file.values.size() / 40;
+        for (std::size_t r = 0; r < 40; ++r)
+            ASSERT_EQ(unpacked(file.values.data() + r * row_bytes, width, kind.bits), expected[r]) << seed;
     }
 }
 
