@@ -60,14 +60,9 @@ constexpr ResinField<PlateTravel> travel_fields[]{
     {"wait_after_lift_s", "s", &PlateTravel::wait_after_lift_s},
     {"wait_after_retract_s", "s, before the exposure", &PlateTravel::wait_after_retract_s}};
 
-constexpr ResinField<ExposureRange> range_fields[]{
-    {"from_mm", "mm above the plate", &ExposureRange::from_mm},
-    {"to_mm", "mm above the plate", &ExposureRange::to_mm},
-    {"exposure_s", "s, of a layer in this range", &ExposureRange::exposure_s}};
-
 constexpr std::string_view bottom_travel_key = "bottom_travel";
 constexpr std::string_view travel_key = "travel";
-constexpr std::string_view ranges_key = "ranges";
+constexpr std::string_view ranges_key = "exposure_ranges";
 
 // ------------------------------------------------------------------------------------------------ read
 
@@ -139,18 +134,55 @@ void read_group(const TomlValue& value, std::string_view name, std::span<const R
             refuse_resin_key(entry, name, names_of_fields(fields));
 }
 
+/// Returns the range of heights of an entry of a table of ranges, whose key is "from:to".
+ExposureRange range_of(const TomlEntry& entry) {
+    const auto refuse = [&](std::string_view found) {
+        refuse_toml(entry.value.location,
+                    fmt::format("[{}] has \"{}\", {}", ranges_key, excerpt(entry.key), found));
+    };
+    ExposureRange range;
+    const std::size_t colon = entry.key.find(':');
+    try {
+        if (colon == std::string::npos)
+            throw Error(ErrorKind::usage, "no colon");
+        range.from_mm = parse_number(std::string_view(entry.key).substr(0, colon));
+        range.to_mm = parse_number(std::string_view(entry.key).substr(colon + 1));
+    } catch (const Error&) {
+        refuse("which has to be two heights in mm above the plate, such as \"0:0.4\"");
+    }
+    if (range.from_mm < 0)
+        refuse("which begins below the plate; heights are 0 or more");
+    if (!(range.from_mm < range.to_mm))
+        refuse(fmt::format(
+            "which ends where it begins or below; write the lower height first, such as \"{}:{}\"",
+            exact(std::min(range.from_mm, range.to_mm)),
+            exact(range.from_mm == range.to_mm ? range.to_mm + 1 : range.from_mm)));
+    set_from(entry.value, fmt::format("{}.\"{}\"", ranges_key, excerpt(entry.key)), range.exposure_s);
+    if (!(range.exposure_s > 0))
+        refuse(fmt::format("with an exposure of {} s; choose a positive number", range.exposure_s));
+    return range;
+}
+
 void read_ranges(const TomlValue& value, std::vector<ExposureRange>& ranges) {
-    const auto* const list = value.as<TomlList>();
-    if (list == nullptr)
-        refuse_value(value, std::string(ranges_key), fmt::format("tables: [[{}]]", ranges_key));
-    for (const TomlValue& item : *list) {
-        read_group<ExposureRange>(item, ranges_key, range_fields, ranges.emplace_back());
-        for (const std::string& name : names_of_fields<ExposureRange>(range_fields)) {
-            const auto& table = *item.as<TomlTable>();
-            if (std::none_of(table.begin(), table.end(),
-                             [&](const TomlEntry& entry) { return entry.key == name; }))
-                refuse_toml(item.location, fmt::format("a range needs {}", name));
-        }
+    const auto* const table = value.as<TomlTable>();
+    if (table == nullptr)
+        refuse_value(value, std::string(ranges_key), fmt::format("a table: [{}]", ranges_key));
+    struct ReadRange {
+        ExposureRange range;
+        const TomlEntry* entry;
+    };
+    std::vector<ReadRange> read;
+    for (const TomlEntry& entry : *table)
+        read.push_back({range_of(entry), &entry});
+    std::sort(read.begin(), read.end(),
+              [](const ReadRange& a, const ReadRange& b) { return a.range.from_mm < b.range.from_mm; });
+    for (std::size_t i = 0; i < read.size(); ++i) {
+        const auto& [range, entry] = read[i];
+        if (i > 0 && range.from_mm < read[i - 1].range.to_mm)
+            refuse_toml(entry->value.location,
+                        fmt::format("[{}] has \"{}\", which overlaps \"{}\"; a height may be in one range",
+                                    ranges_key, excerpt(entry->key), excerpt(read[i - 1].entry->key)));
+        ranges.push_back(range);
     }
 }
 
@@ -185,6 +217,18 @@ std::string group_text(std::span<const ResinField<Group>> fields, const Group& g
     return text;
 }
 
+/// Returns the table of ranges; a comment with an example if there are none.
+std::string ranges_text(std::span<const ExposureRange> ranges) {
+    constexpr std::string_view help = "s, of layers from one height to another, in mm above the plate";
+    if (ranges.empty())
+        return fmt::format("\n# [{}]{:<12} # {}\n# \"0:0.4\" = 35\n", ranges_key, "", help);
+    std::string text = fmt::format("\n[{}]{:<14} # {}\n", ranges_key, "", help);
+    for (const ExposureRange& range : ranges)
+        text += fmt::format("\"{}:{}\" = {}\n", exact(range.from_mm), exact(range.to_mm),
+                            exact(range.exposure_s));
+    return text;
+}
+
 } // namespace
 
 ResinSettings read_resin_settings(const std::string& path, ResinSettings settings) {
@@ -216,9 +260,7 @@ std::string resin_settings_text(const ResinSettings& settings) {
     text += group_text<PlateTravel>(travel_fields, settings.bottom_travel);
     text += fmt::format("\n[{}]{:<23} # of the plate before other layers\n", travel_key, "");
     text += group_text<PlateTravel>(travel_fields, settings.travel);
-    for (const ExposureRange& range : settings.ranges)
-        text += fmt::format("\n[[{}]]\n", ranges_key) + group_text<ExposureRange>(range_fields, range);
-    return text;
+    return text + ranges_text(settings.ranges);
 }
 
 } // namespace lamella::app

@@ -25,14 +25,16 @@ class ResinSettings(ProgramTest):
     def test_what_is_shown_can_be_read(self):
         shown = self.succeed("resin", "show").text
         self.assertIn("# exposure_s =", shown)
+        self.assertIn("# [exposure_ranges]", shown)
+        self.assertIn('# "0:0.4" = 35', shown)
         self.assertEqual(self.succeed("resin", "show", self.file(shown)).text, shown)
         self.succeed("resin", "check", "resin.toml")
         own = shown.replace("# exposure_s =", "exposure_s = 4").replace('"$"', '"EUR"') + (
-            "\n[[ranges]]\nfrom_mm = 1\nto_mm = 2.5\nexposure_s = 9\n")
+            '\n[exposure_ranges]\n"11:12" = 1\n"1:2.5" = 9\n"0:1" = 8.5\n')
         again = self.succeed("resin", "show", self.file(own)).text
         self.assertIn("exposure_s = 4 ", again)
         self.assertIn('currency = "EUR"', again)
-        self.assertIn("to_mm = 2.5 ", again)
+        self.assertIn('"0:1" = 8.5\n"1:2.5" = 9\n"11:12" = 1\n', again)
         self.assertEqual(self.succeed("resin", "show", self.file(again)).text, again)
 
     def test_errors_name_the_line(self):
@@ -41,7 +43,18 @@ class ResinSettings(ProgramTest):
                 ("\n[travel]\nlift = 3", r"resin\.toml:3: \[travel\] has no \"lift\""),
                 ("bottom_layers = 2.5", r"resin\.toml:1: bottom_layers is 2\.5, but has to be a whole number"),
                 ("travel = 3", r"resin\.toml:1: travel is 3, but has to be a table: \[travel\]"),
-                ("[[ranges]]\nfrom_mm = 1\nto_mm = 2", "a range needs exposure_s"),
+                ("[[ranges]]\nfrom_mm = 1", r'resin\.toml:1: a file of settings for resin has no "ranges"'),
+                ("exposure_ranges = 3", r"resin\.toml:1: exposure_ranges is 3, but has to be a table: \[exposure_ranges\]"),
+                ('[exposure_ranges]\n"0:1" = 3\n"2:1" = 3',
+                 r'resin\.toml:3: \[exposure_ranges\] has "2:1", which ends where it begins or below; write the lower height first, such as "1:2"'),
+                ('[exposure_ranges]\n"1:1" = 3', 'such as "1:2"'),
+                ('[exposure_ranges]\n"0:1" = 3\n"2:4" = 3\n"0.9:2" = 3',
+                 r'resin\.toml:4: \[exposure_ranges\] has "0\.9:2", which overlaps "0:1"; a height may be in one range'),
+                ('[exposure_ranges]\nlow = 3', r'resin\.toml:2: .* "low", which has to be two heights in mm above the plate, such as "0:0\.4"'),
+                ('[exposure_ranges]\n"0:x" = 3', r'resin\.toml:2: .* "0:x", which has to be two heights'),
+                ('[exposure_ranges]\n"-1:2" = 3', r'resin\.toml:2: .* begins below the plate'),
+                ('[exposure_ranges]\n"0:1" = "long"', r'resin\.toml:2: exposure_ranges\."0:1" is "long", but has to be a number'),
+                ('[exposure_ranges]\n"0:1" = 0', r'resin\.toml:2: .* with an exposure of 0 s'),
                 ("currency = 3", "currency is 3, but has to be a text"),
                 ("density_g_ml = 0", r"resin\.toml: a density of 0 g/ml: choose a positive number"),
                 ("exposure_s = ", r"resin\.toml:1: ")]:
@@ -51,7 +64,7 @@ class ResinSettings(ProgramTest):
     def test_options_override_the_file(self):
         self.box(size="2,2,4")
         self.file("exposure_s = 3\nbottom_exposure_s = 40\nbottom_layers = 1\ntransition_layers = 0\n"
-                  "[[ranges]]\nfrom_mm = 2\nto_mm = 3\nexposure_s = 7\n")
+                  '[exposure_ranges]\n"2:3" = 7\n')
         common = ["slice", "box.stl", "--layer-height", "1", "--printer", "Mars 4 DLP", "--resin", "resin.toml"]
         self.succeed(*common, "-o", "a.goo")
         self.assertEqual(self.exposures("a.goo"), [40, 3, 7, 3])
