@@ -48,7 +48,8 @@ struct ImageOptions {
     RasterOptions raster = {};
 
     /// If true, images of png and png-zip have a palette: each pixel has the colour of the part in which its
-    /// centre lies, of several parts the first, and is transparent outside of all. `raster` does not apply.
+    /// centre lies, and is transparent outside of all. Of several parts it is the one that covers most of the
+    /// pixel, and the first among equals. `raster` does not apply.
     bool colour_parts = false;
     /// The colour of each part; if there are none, colours are chosen. Black is the background.
     std::vector<PartColour> part_colours{};

@@ -171,6 +171,17 @@ RunImage drawn(std::span<const Layer> parts, const PixelGrid& grid, const Raster
     return image;
 }
 
+/// Returns the coverage of those pixels whose centres are in the part, which are not 0 in `centres`.
+RunImage shares_of(RunImage centres, const Layer& part, const PixelGrid& grid) {
+    RasterAreas areas;
+    std::vector<RunImage> both;
+    both.push_back(std::move(centres));
+    both.push_back(drawn({&part, 1}, grid, {.antialias = most_antialias}, areas));
+    return merged_images(both, [](std::span<const std::uint8_t> pixels) -> std::uint8_t {
+        return pixels[0] > 0 ? std::max<std::uint8_t>(pixels[1], 1) : 0;
+    });
+}
+
 double value_of(std::span<const PixelRun> row) {
     std::uint64_t sum = 0;
     std::uint32_t from = 0;
@@ -252,12 +263,19 @@ RasterAreas draw_part_numbers(std::span<const Layer> parts, const PixelGrid& gri
     }
     if (images.empty())
         return drawing.draw(Plane(), sink);
-    const RunImage numbered =
-        merged_images(images, [&](std::span<const std::uint8_t> pixels) -> std::uint8_t {
-            const auto first =
-                std::find_if(pixels.begin(), pixels.end(), [](std::uint8_t value) { return value > 0; });
-            return first == pixels.end() ? 0 : numbers[static_cast<std::size_t>(first - pixels.begin())];
-        });
+    bool overlap = false;
+    const auto number_of = [&](std::span<const std::uint8_t> pixels) -> std::uint8_t {
+        const auto most = std::max_element(pixels.begin(), pixels.end());
+        overlap =
+            overlap || std::any_of(most + 1, pixels.end(), [](std::uint8_t value) { return value > 0; });
+        return *most == 0 ? 0 : numbers[static_cast<std::size_t>(most - pixels.begin())];
+    };
+    RunImage numbered = merged_images(images, number_of);
+    if (overlap) { // exact coverage decides
+        for (std::size_t i = 0; i < images.size(); ++i)
+            images[i] = shares_of(std::move(images[i]), parts[numbers[i] - 1U], grid);
+        numbered = merged_images(images, number_of);
+    }
     Plane plane;
     plane.image = std::make_shared<RunImage>(numbered);
     drawing.draw(plane, [&](std::span<const PixelRun> row, std::uint32_t times) {

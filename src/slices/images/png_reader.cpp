@@ -97,6 +97,7 @@ struct PngContent {
     std::string joined = {};      ///< the compressed pixels, if they are in several chunks
     std::string_view pixels = {}; ///< the compressed pixels
     std::string_view palette = {};
+    std::string_view alphas = {}; ///< of the first colours of the palette
 };
 
 PngContent content_of(std::string_view file, const std::string& name) {
@@ -116,6 +117,8 @@ PngContent content_of(std::string_view file, const std::string& name) {
                        "the PNG file is damaged");
         if (kind == "PLTE")
             content.palette = body;
+        if (kind == "tRNS")
+            content.alphas = body;
         if (kind == "IDAT") {
             if (++chunks == 2)
                 content.joined = content.pixels;
@@ -217,11 +220,16 @@ void add_bytes(const std::uint8_t* row, std::size_t size, RunBuilder& image) {
 /// Adds rows of pixels of one kind to an image.
 class PngRows {
   public:
-    PngRows(const PngHead& head, std::string_view palette) : head_(head), pixels_(head.width) {
+    PngRows(const PngHead& head, std::string_view palette, std::string_view alphas)
+        : head_(head), pixels_(head.width) {
         for (std::size_t i = 0; i + 2 < palette.size() && i / 3 < greys_.size(); i += 3)
             greys_[i / 3] =
                 std::max({static_cast<std::uint8_t>(palette[i]), static_cast<std::uint8_t>(palette[i + 1]),
                           static_cast<std::uint8_t>(palette[i + 2])});
+        if (head.colour == PngColour::palette && !alphas.empty()) {
+            greys_.fill(255);
+            std::copy_n(alphas.begin(), std::min(alphas.size(), greys_.size()), greys_.begin());
+        }
         if (head.colour == PngColour::grey)
             for (unsigned v = 0; v < 1U << std::min(head.bits, 8U); ++v)
                 greys_[v] = static_cast<std::uint8_t>(v * 255 / ((1U << head.bits) - 1));
@@ -300,7 +308,7 @@ void decode_png(std::string_view file, const std::string& name, RunBuilder& imag
     const std::vector<std::uint8_t> none(static_cast<std::size_t>(row_bytes));
     auto* row = reinterpret_cast<std::uint8_t*>(unpacked.span().data()); // NOLINT
     const std::uint8_t* above = none.data();
-    PngRows rows(head, content.palette);
+    PngRows rows(head, content.palette, content.alphas);
     for (std::uint32_t r = 0; r < head.height; ++r) {
         constexpr unsigned last_filter = 4;
         if (*row > last_filter)

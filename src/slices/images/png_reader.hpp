@@ -18,7 +18,8 @@ namespace lamella {
 [[nodiscard]] AlongXY<std::uint32_t> png_size(std::string_view file, const std::string& name);
 
 /// Decodes the image. Greys of fewer than 8 bits become 0 to 255, colours their largest part, and what is
-/// transparent black. Three columns may be the colours of one pixel, as some printers expect it. Throws
+/// transparent black. Of a palette with transparent colours, only how opaque they are counts: all others are
+/// 255, as in images by part. Three columns may be the colours of one pixel, as some printers expect it. Throws
 /// Error{input} for damaged files, other sizes than that of the image, interlaced files, and 16 bits.
 void decode_png(std::string_view file, const std::string& name, RunBuilder& image, ReadLimits& limits);
 

@@ -64,15 +64,19 @@ TEST(LayerImages, AHoleWhoseOuterContourIsOpenIsNoBody) {
     EXPECT_EQ(images.image(Plane(apart)).areas.covered, 10 * 10);
 }
 
-TEST(LayerImages, NumberTheFirstPartInWhichAPixelLies) {
+TEST(LayerImages, NumberThePartThatCoversMostOfAPixelAmongThoseAroundItsCentre) {
     const PixelGrid grid{.width = 60, .height = 60, .u0 = 30, .v0 = 30};
     const LayerStack layers = random_layers(5, 12, 50, {0, 0}, false);
     std::vector<std::uint8_t> expected(std::size_t{60} * 60);
-    for (std::size_t part = layers.size(); part-- > 0;) {
-        const GreyImage image = paint({&layers[part], 1}, grid, {.antialias = 1});
+    std::vector<int> largest(expected.size(), -1);
+    for (std::size_t part = 0; part < layers.size(); ++part) {
+        const GreyImage centres = paint({&layers[part], 1}, grid, {.antialias = 1});
+        const GreyImage shares = paint({&layers[part], 1}, grid, {.antialias = most_antialias});
         for (std::size_t k = 0; k < expected.size(); ++k)
-            if (image.values[k] > 0)
+            if (centres.values[k] > 0 && shares.values[k] > largest[k]) {
+                largest[k] = shares.values[k];
                 expected[k] = static_cast<std::uint8_t>(part + 1);
+            }
     }
     std::vector<std::uint8_t> numbers;
     const RasterAreas areas = draw_part_numbers(layers, grid, [&](auto row, auto times) {

@@ -37,6 +37,7 @@ struct PngParts {
     std::string rows = std::string("\0abcd\0efgh", 10); ///< with their filters
     std::size_t pieces = 1;                             ///< chunks of pixels
     std::string palette = {};
+    std::string alphas = {};
 };
 
 std::string png_of(const PngParts& parts) {
@@ -51,6 +52,8 @@ std::string png_of(const PngParts& parts) {
                                          static_cast<char>(parts.interlace));
     if (!parts.palette.empty())
         file += chunk("PLTE", parts.palette);
+    if (!parts.alphas.empty())
+        file += chunk("tRNS", parts.alphas);
     for (std::size_t i = 0; i < parts.pieces; ++i) {
         const std::size_t from = i * stream.size() / parts.pieces;
         file += chunk("IDAT", stream.substr(from, (i + 1) * stream.size() / parts.pieces - from));
@@ -106,6 +109,17 @@ TEST(PngReader, ReadsGreysAndColours) {
     EXPECT_EQ(pixels_of(png_of({.width = 2, .height = 1, .colour = 2, .rows = {"\0\1\2\3\4\5\6", 7}}), 6, 1),
               (Values{1, 2, 3, 4, 5, 6}))
         << "three pixels in one";
+}
+
+TEST(PngReader, ReadsAllColoursOfPartsAsMaterial) {
+    EXPECT_EQ(pixels_of(png_of({.height = 1,
+                                .bits = 2,
+                                .colour = 3,
+                                .rows = {"\0\x1B", 2},
+                                .palette = {"\0\0\0\0\0\0\1\2\3\xff\xff\xff", 12},
+                                .alphas = {"\0", 1}}),
+                        4, 1),
+              (Values{0, 255, 255, 255}));
 }
 
 TEST(PngReader, UndoesFilters) {
