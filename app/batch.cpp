@@ -7,6 +7,7 @@
 #include "figures.hpp"
 #include "numbers.hpp"
 #include "options.hpp"
+#include "resin_figures.hpp"
 #include "text_file.hpp"
 #include "worker_team.hpp"
 
@@ -67,6 +68,8 @@ Json record_of(const BatchItem& item, const BatchResult& result) {
     Json record = {{"path", item.input}, {"output", name_or_null(item.output)}, {"ok", true}};
     record.update(as_json(picked(run, {"triangles", "layers", "contours", "open_chains", "points",
                                        "volume_mm3", "hash", "bytes", "threads"})));
+    if (file.resin)
+        record.update(as_json(amount_figures(*file.resin)));
     record["seconds"] = as_json(run)["total"];
     record["warnings"] = std::move(warnings);
     return record;

@@ -20,6 +20,7 @@
 #include "page_notes.hpp"
 #include "print_check_report.hpp"
 #include "repair_options.hpp"
+#include "resin_figures.hpp"
 #include "run_warnings.hpp"
 #include "scan_figures.hpp"
 #include "scan_options.hpp"
@@ -382,6 +383,8 @@ std::string summary(const FileJob& job, const FileResult& result) {
     if (!result.format.empty())
         text += fmt::format("written  {}: {}, {}\n", one_line(output_name(job.output)), result.format,
                             byte_size(result.bytes));
+    if (result.resin)
+        text += as_lines(amount_figures(*result.resin));
     if (!job.report.path.empty())
         text += fmt::format("report   {}: open it with a browser\n", one_line(job.report.path));
     return text;

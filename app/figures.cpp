@@ -9,6 +9,7 @@
 #include "options.hpp"
 #include "print_check_report.hpp"
 #include "repair_options.hpp"
+#include "resin_figures.hpp"
 #include "scan_figures.hpp"
 #include "strategy_file.hpp"
 #include "system/program_start.hpp"
@@ -406,6 +407,8 @@ Json stats_json(const Command& command, const FileJob& job, const FileResult& re
                                             "write", "order", "end", "total"}));
     stats["peak_rss_bytes"] = peak_memory();
     stats.update(as_json(picked(run, {"points", "contours", "open_chains", "volume_mm3", "hash"})));
+    if (result.resin)
+        stats.update(as_json(amount_figures(*result.resin)));
     if (result.ranges != 0)
         stats["ranges"] = result.ranges;
     if (result.changes) {

@@ -4,6 +4,7 @@
 #include "numbers.hpp"
 #include "options.hpp"
 #include "print_check_report.hpp"
+#include "resin_figures.hpp"
 #include "scan_figures.hpp"
 #include "standard_streams.hpp"
 #include "viewer/viewer_page.hpp"
@@ -68,6 +69,8 @@ PageNotes run_notes(const FileResult& result) {
         {"The run", as_facts(picked(run_figures(result),
                                     {"engine", "threads", "read", "weld", "link", "slice", "polygon", "scan",
                                      "format", "write", "order", "end", "bytes"}))});
+    if (result.resin)
+        notes.sections.push_back({"The print", as_facts(amount_figures(*result.resin))});
     if (!result.exposures.empty())
         notes.sections.push_back({"Scan vectors", as_facts(scan_figures(result.exposures))});
     if (result.check) {

@@ -52,6 +52,18 @@ void add_known(Figures& figures, std::string_view key, double value, std::string
 
 } // namespace
 
+Figures amount_figures(const ResinJob& job) {
+    Figures figures;
+    add_known(figures, "resin_ml", job.volume_ml, "resin", fmt::format("{:.4g} ml", job.volume_ml));
+    add_known(figures, "resin_g", job.mass_g, "mass", fmt::format("{:.4g} g", job.mass_g));
+    const std::string currency = one_line(job.settings.currency.substr(0, job.settings.currency.find('/')));
+    add_known(figures, "price", job.price, "price",
+              fmt::format("{:.4g}{}{}", job.price, currency.empty() ? "" : " ", currency));
+    const double seconds = std::round(job.time_s); // as most files have it
+    add_known(figures, "print_seconds", seconds, "print time", duration(seconds));
+    return figures;
+}
+
 Figures resin_figures(const LayerFile& file) {
     if (!file.resin)
         return {};
@@ -73,12 +85,8 @@ Figures resin_figures(const LayerFile& file) {
     figures.push_back(heights_figure(file));
     if (!job.exposures_s.empty())
         figures.push_back(exposures_figure(job));
-    add_known(figures, "resin_ml", job.volume_ml, "resin", fmt::format("{:.4g} ml", job.volume_ml));
-    add_known(figures, "resin_g", job.mass_g, "mass", fmt::format("{:.4g} g", job.mass_g));
-    add_known(figures, "price", job.price, "price",
-              fmt::format("{:.4g} {}", job.price,
-                          one_line(job.settings.currency.substr(0, job.settings.currency.find('/')))));
-    add_known(figures, "print_seconds", job.time_s, "print time", duration(job.time_s));
+    const Figures amounts = amount_figures(job);
+    figures.insert(figures.end(), amounts.begin(), amounts.end());
     return figures;
 }
 

@@ -40,6 +40,8 @@ void JobOutput::finish_file(FileResult& result) {
     result.format = format_->name;
     result.bytes = writer_->bytes();
     result.losses = writer_->findings();
+    if (const ResinJob* const job = writer_->resin_job())
+        result.resin = *job;
 }
 
 Findings JobOutput::finish_page(const PageNotes& notes) {

@@ -36,7 +36,7 @@ class JobOutput {
     /// Works as LayerWriter::prepare, for all outputs.
     [[nodiscard]] Commit prepare(const Plane& plane);
 
-    /// Ends the slice file, if there is one. Sets `format`, `bytes` and `losses` of the result.
+    /// Ends the slice file, if there is one. Sets `format`, `bytes`, `losses` and `resin` of the result.
     void finish_file(FileResult& result);
     /// Ends the page with these notes, and returns its losses.
     [[nodiscard]] Findings finish_page(const PageNotes& notes);

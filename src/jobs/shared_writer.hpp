@@ -36,6 +36,10 @@ class SharedWriter final : public LayerWriter {
     /// Returns the size of the whole file after `finish`.
     [[nodiscard]] std::uint64_t bytes() const noexcept override { return bytes_; }
     [[nodiscard]] Findings findings() const override { return losses_; }
+    /// Returns that of process 0; null in other processes.
+    [[nodiscard]] const ResinJob* resin_job() const noexcept override {
+        return writer_ ? writer_->resin_job() : nullptr;
+    }
 
   private:
     [[nodiscard]] Commit kept(std::string plane);

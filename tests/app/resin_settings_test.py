@@ -1,5 +1,6 @@
 """Settings for resin: lamella resin, lamella printers and --resin."""
 
+import json
 import struct
 
 from program import ProgramTest, main
@@ -71,6 +72,42 @@ class ResinSettings(ProgramTest):
         self.succeed(*common, "-o", "b.goo", "--exposure", "5", "--first-exposure", "21", "--fade-layers", "1")
         self.assertEqual(self.exposures("b.goo"), [21, 13, 7, 5])
         self.fail_with(2, "--resin goes with the formats sl1", "slice", "box.stl", "-o", "a.cli", "--resin", "resin.toml")
+
+    def test_slicing_says_what_info_says_of_the_job(self):
+        keys = {"resin_ml": "resin", "resin_g": "mass", "price": "price", "print_seconds": "print time"}
+        self.box(size="13,7,4")
+        self.file('density_g_ml = 1.13\nprice_per_litre = 4000\ncurrency = "EUR"\n[exposure_ranges]\n"1:2.5" = 4.25\n')
+        found = set()
+        for job, printer, resin in [("a.goo", "Mars 4 DLP", True), ("a.ctb", "LD-002R", True), ("a.pwmb", "Mono X 6K", True),
+                                    ("a.sl1", "", False), ("a.cbddlp", "", True), ("a.zip", "", True)]:
+            with self.subTest(job):
+                options = ["--printer", printer] if printer else []
+                if job == "a.cbddlp":
+                    options = ["--display-size", "68,120", "--resolution", "1440x2560"]
+                if job == "a.zip":
+                    options = ["--display-size", "68,120", "--resolution", "1440x2560", "--format", "chitubox-zip"]
+                options += ["--resin", "resin.toml"] if resin else []
+                result = self.succeed("slice", "box.stl", "-o", job, "--layer-height", "0.5", "--stats", "stats.json", *options)
+                stats = json.loads(self.bytes_of("stats.json"))
+                info = self.succeed("info", job, "--json").json()
+                lines = self.succeed("info", job).text.splitlines()
+                for key, name in keys.items():
+                    if key not in info:
+                        continue
+                    found.add((job, key))
+                    self.assertAlmostEqual(stats[key] / info[key], 1, delta=0 if key == "print_seconds" else 1e-6, msg=key)
+                    own = [line for line in lines if line.startswith(f"  {name} ")]
+                    self.assertEqual(len(own), 1, lines)
+                    said = [line for line in result.text.splitlines() if line.startswith(f"  {name} ")]
+                    # Formats of Chitubox have no currency.
+                    self.assertEqual([line.removesuffix(" EUR") if key == "price" and job in ("a.ctb", "a.cbddlp", "a.zip") else line for line in said], own)
+        self.assertLessEqual({("a.goo", key) for key in keys}, found)
+        self.assertLessEqual({("a.sl1", key) for key in ("resin_ml", "print_seconds")}, found)
+        self.succeed("slice", "box.stl", "-o", "a.goo", "--layer-height", "0.5", "--printer", "Mars 4 DLP", "--report", "page.html")
+        page = self.bytes_of("page.html").decode()
+        for word in ("The print", "Resin", "Mass", "Print time"):
+            self.assertIn(f'"{word}"', page)
+        self.assertNotIn("resin_ml", self.succeed("slice", "box.stl", "-o", "a.cli", "--layer-height", "0.5", "--stats", "-").json())
 
     def test_printers_are_found_by_the_names_that_are_listed(self):
         self.box(size="1,1,1")

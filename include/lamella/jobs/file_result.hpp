@@ -14,6 +14,7 @@
 #include "lamella/mesh/inspect.hpp"
 #include "lamella/polygon/layer_steps.hpp"
 #include "lamella/scan/scan.hpp"
+#include "lamella/slices/resin_job.hpp"
 #include "lamella/slicing/plan.hpp"
 #include "lamella/slicing/slice.hpp"
 
@@ -124,6 +125,7 @@ struct FileResult {
     Findings losses;         ///< in the slice file, caused by its format; see LayerWriter::findings
     Findings report_losses;  ///< in the page (FileJob::report)
 
+    std::optional<ResinJob> resin;   ///< the job that was written; see LayerWriter::resin_job
     std::optional<PrintCheck> check; ///< with FileJob::check
 
     /// Statistics of each layer in ascending z, and the volume as the sum of area times thickness; with

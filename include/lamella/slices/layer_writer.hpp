@@ -129,6 +129,7 @@ struct LayerWriteOptions {
 };
 
 class LayerWriter;
+struct ResinJob;
 
 /// Properties of a format. Its row is in src/slices/engine/slice_formats.cpp.
 struct LayerFormat {
@@ -195,6 +196,10 @@ class LayerWriter {
     [[nodiscard]] virtual Findings findings() const { return {}; }
     /// Returns their texts.
     [[nodiscard]] std::vector<std::string> warnings() const { return findings().texts(); }
+
+    /// Returns the printer, the settings and the amounts of a job for a resin printer, without exposures;
+    /// null in other formats. Must be called after `finish`.
+    [[nodiscard]] virtual const ResinJob* resin_job() const noexcept { return nullptr; }
 
     /// Returns the losses behind `findings`, for the writer of another range of the file.
     [[nodiscard]] virtual WriteLosses losses() const { return {}; }

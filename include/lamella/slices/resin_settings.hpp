@@ -61,7 +61,7 @@ struct ResinSettings {
 
     double density_g_ml = 1.1;
     double price_per_litre = 0;
-    std::string currency = "$"; ///< at most 7 bytes
+    std::string currency = "$"; ///< at most 7 bytes; "" if it is not known
 
     /// Time of creation recorded in the file, in seconds since 1970. It is constant by default so that equal
     /// layers give equal bytes.

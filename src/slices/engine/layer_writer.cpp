@@ -100,6 +100,7 @@ class LimitedWriter final : public LayerWriter {
         return found;
     }
     WriteLosses losses() const override { return writer_->losses(); }
+    const ResinJob* resin_job() const noexcept override { return writer_->resin_job(); }
     void add_losses(const WriteLosses& above) override { writer_->add_losses(above); }
 
   private:

@@ -165,6 +165,7 @@ LayerFile read_chitubox_zip(const ZipReader& archive, ReadLimits& limits, const 
     job.volume_ml = code.number("volume", 0);
     job.mass_g = code.number("weight", 0);
     job.price = code.number("price", 0);
+    job.settings.currency.clear(); // the file does not say it
     job.time_s = code.number("estimatedPrintTime", 0);
     const ResinPrinter* const printer = known_printer(job.printer);
     head.grid = grid_of_display(archive.name(), job.pixels, job.display_mm, code.number("mirror", 1) == 1,

@@ -187,6 +187,7 @@ class ChituboxFile {
         job.volume_ml = record_.f32();
         job.mass_g = record_.f32();
         job.price = record_.f32();
+        settings.currency.clear(); // the file does not say it
         if (job.volume_ml > 0 && job.mass_g > 0)
             settings.density_g_ml = job.mass_g / job.volume_ml;
         if (job.volume_ml > 0 && job.price > 0)

@@ -55,7 +55,7 @@ ResinSettings usable_settings(ResinSettings settings) {
     keep_positive(settings.density_g_ml, ResinSettings{}.density_g_ml);
     keep_not_negative(settings.price_per_litre);
     constexpr std::size_t longest_currency = 7;
-    if (settings.currency.empty() || settings.currency.size() > longest_currency)
+    if (settings.currency.size() > longest_currency)
         settings.currency = ResinSettings{}.currency;
     return settings;
 }

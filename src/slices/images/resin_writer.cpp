@@ -137,6 +137,13 @@ void ResinWriter::end_file() {
     totals_.volume_ml = volume_mm3_ / 1000;
     totals_.mass_g = plan_.mass_g(totals_.volume_ml);
     totals_.price = plan_.price(totals_.volume_ml);
+    job_ = {.printer = machine_name_,
+            .pixels = {grid().width, grid().height},
+            .settings = plan_.settings(),
+            .volume_ml = totals_.volume_ml,
+            .mass_g = totals_.mass_g,
+            .price = totals_.price,
+            .time_s = totals_.print_time_s};
     end_job(totals_);
 }
 

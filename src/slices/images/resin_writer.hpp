@@ -3,6 +3,7 @@
 // Base of the writers of jobs for resin printers.
 
 #include "lamella/slices/layer_writer.hpp"
+#include "lamella/slices/resin_job.hpp"
 
 #include "raster/relief.hpp"
 #include "slices/engine/ordered_writer.hpp"
@@ -65,6 +66,9 @@ struct ResinTotals {
 
 /// Draws a preview, counts and checks layers, and knows the exposure of each.
 class ResinWriter : public OrderedWriter {
+  public:
+    const ResinJob* resin_job() const noexcept final { return &job_; }
+
   protected:
     ResinWriter(const LayerFileInfo& info, const LayerWriteOptions& options, const ResinJobKind& kind,
                 const ResinPrinter& printer)
@@ -116,6 +120,7 @@ class ResinWriter : public OrderedWriter {
     double top_ = 0; ///< of the previous layer
     double volume_mm3_ = 0;
     ResinTotals totals_;
+    ResinJob job_;
 };
 
 } // namespace lamella
