@@ -419,6 +419,10 @@ def lengths(name: str, value: Any) -> Tuple[float, float]:
     return pair(name, value, "one length, or two (x, y)", positive)
 
 
+def inset_and_height(name: str, value: Any) -> Tuple[float, float]:
+    return pair(name, value, "two lengths above 0 (inset, height)", positive)
+
+
 def optional(check: Callable[..., T], name: str, value: Any, *more: Any) -> Optional[T]:
     """Returns None for None, otherwise the result of the check."""
     return None if value is None else check(name, value, *more)
@@ -487,6 +491,7 @@ Threads = Annotated[int, functools.partial(whole, most=4096)]
 Antialias = Annotated[int, functools.partial(whole, least=1, most=64)]
 Progress = Annotated[Callable[[str, int, int], object], listener]
 Words = Annotated[Union[str, Iterable[str]], words]
+InsetAndHeight = Annotated[Tuple[float, float], inset_and_height]
 Lengths = Annotated[Union[float, Tuple[float, float]], lengths]
 Coordinates = Annotated[Vector, coordinates]
 Matrix = Annotated[npt.ArrayLike, matrix]

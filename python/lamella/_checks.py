@@ -9,7 +9,7 @@ from typing import Any, Dict, List, Optional, Tuple, Union
 
 from . import _arguments as check
 from . import _lamella
-from ._arguments import Coordinates, CutAt, Distance, FillRule, Matrix, Positive, Progress, Readable, Threads
+from ._arguments import Coordinates, CutAt, Distance, FillRule, InsetAndHeight, Matrix, Positive, Progress, Readable, Threads
 from ._errors import UsageError
 from ._files import as_stack
 from ._lamella import Layer, Stack
@@ -53,6 +53,7 @@ def verify(
     snap: Distance = 0,
     tolerance: Distance = 0,
     fill: Optional[FillRule] = None,
+    bottom_offset: Optional[InsetAndHeight] = None,
     direction: Coordinates = (0, 0, 1),
     transform: Optional[Matrix] = None,
     unit_mm: Optional[Positive] = None,
@@ -74,6 +75,7 @@ def verify(
     tolerance: additional tolerance of points, ends of lines and cuts, in millimetres, besides the rounding of the
         format: for layers that were rounded before, such as those of a CLI file converted to JSON.
     fill: the rule by which the layers were filled, as for `slice`; the sections of the mesh are filled by it, too.
+    bottom_offset: by how much the first layers were shrunk, as for `slice`.
     weld_tolerance, drop_duplicates, orient, close_gaps: the repairs with which the mesh was sliced, as for `slice`. A
         mesh from `mend` is repaired already.
     threads: number of threads; 0 means one for each processor.
@@ -81,11 +83,13 @@ def verify(
 
     Raises InputError.
     """
-    if fill is not None and mesh is None:
-        raise UsageError("fill goes with a mesh, and none is given")
+    for name, step in (("fill", fill), ("bottom_offset", bottom_offset)):
+        if step is not None and mesh is None:
+            raise UsageError(f"{name} goes with a mesh, and none is given")
     stack = as_stack("layers", layers, threads, progress)
     return Verification(**_lamella.verify(
-        stack, _mesh_as_sliced(locals()), at or "", snap, tolerance, close_gaps, fill or "none", threads, progress
+        stack, _mesh_as_sliced(locals()), at or "", snap, tolerance, close_gaps, fill or "none", bottom_offset,
+        threads, progress
     ))  # fmt: skip
 
 

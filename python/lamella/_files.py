@@ -12,8 +12,8 @@ import numpy.typing as npt
 from . import _arguments as check
 from . import _lamella
 from ._arguments import (
-    Antialias, BinaryWriter, FillRule, Lengths, Mirror, Orientation, PathLike, Positive, Progress, Readable, Threads, Words,
-    Writable,
+    Antialias, BinaryWriter, FillRule, InsetAndHeight, Lengths, Mirror, Orientation, PathLike, Positive, Progress, Readable,
+    Threads, Words, Writable,
 )  # fmt: skip
 from ._errors import CancelledError, DefectError, InputError, UsageError
 from ._lamella import Exposure, Layer, LayerStream, Mesh, Stack
@@ -416,6 +416,7 @@ def convert(
     target: Writable,
     *,
     fill: Optional[FillRule] = None,
+    bottom_offset: Optional[InsetAndHeight] = None,
     format: str = "",
     units_mm: Optional[Positive] = None,
     short_form: bool = False,
@@ -443,6 +444,7 @@ def convert(
     target: a path or a file object, as for `write`.
     fill: unites contours of a part that overlap. Material is where the winding number satisfies this rule: "nonzero",
         "evenodd" or "positive".
+    bottom_offset: (inset, height) in millimetres, as for `slice`; heights count from the bottom of the first layer.
     For the rest see `write`.
 
     Raises InputError, OutputError, UsageError and TypeError. Issues a DefectWarning if the file has defects or rings
@@ -455,24 +457,32 @@ def convert(
     stack = stack_of_file("source", source, strict, 0, threads, progress)
     if len(stack) == 0:
         raise InputError(f"{stack.path}: holds no layers")
-    if fill is not None:
-        stack = _filled(stack, fill, strict, threads, progress)
-    elif all(part.exposure is None for part in stack.parts):
+    if fill is None and all(part.exposure is None for part in stack.parts):
         inverted = [f"{stack.path}: {text}" for text in _lamella.inverted_layers(stack, threads, progress)]
         if strict and inverted:
             raise DefectError(with_arguments(inverted[0]))
         warn(inverted)
+    if fill is not None or bottom_offset is not None:
+        stack = _after_steps(stack, fill, bottom_offset, strict, threads, progress)
     options = {name: given[name] for name in OPTIONS}
     write(target, stack, format=format, strict=strict, threads=threads, progress=progress, **options)
 
 
-def _filled(stack: Stack, rule: str, strict: bool, threads: int, progress: Optional[Progress]) -> Stack:
+def _after_steps(
+    stack: Stack,
+    fill: Optional[str],
+    bottom_offset: Optional[Tuple[float, float]],
+    strict: bool,
+    threads: int,
+    progress: Optional[Progress],
+) -> Stack:
+    step, earlier = ("fill", "fill") if fill else ("bottom_offset", "shrink layers")
     for part in stack.parts:
         if part.exposure is not None:
-            raise UsageError(f"{stack.path}: holds scan vectors ({part.label}), and fill is for contours: fill before scan")
-    filled, warnings = _lamella.filled(stack, rule, threads, progress)
+            raise UsageError(f"{stack.path}: holds scan vectors ({part.label}), and {step} is for contours: {earlier} before scan")
+    changed, warnings = _lamella.after_steps(stack, fill or "none", bottom_offset, threads, progress)
     _told(stack.path, warnings, strict)
-    return filled
+    return changed
 
 
 def _same_file(first: PathLike, second: bytes) -> bool:

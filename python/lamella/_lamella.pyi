@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from ._arguments import Corners, FillRule, Readable
 from ._pixels import Centre, PixelType, Voxels
-from ._methods import ContourDefect, Contours, PrintCheck, Window
+from ._methods import ContourDefect, Contours, Window
 
 __version__: str
 
@@ -230,10 +230,6 @@ class Stack:
         progress: Optional[Callable[[str, int, int], object]] = None
     ) -> Voxels: ...
     def at(self, z: float) -> Layer: ...
-    def check(
-        self, *, touch: float = 0, overhang_angle: float = 45, threads: int = 0,
-        progress: Optional[Callable[[str, int, int], object]] = None
-    ) -> PrintCheck: ...
     def _repr_html_(self) -> str: ...
     def _write_page(self, arg0: Union[str, bytes], /) -> List[str]: ...
     def _checked(self, arg0: float, arg1: float, arg2: int, arg3: Any, /) -> Dict[str, Any]: ...
@@ -263,7 +259,8 @@ class AdaptiveLayers:
 def plan(
     arg0: Optional[Plate], arg1: Union[UniformLayers, ListedPlanes, HeightRanges, AdaptiveLayers],
     arg2: Union[str, bytes], arg3: Optional[Tuple[float, float]], arg4: Optional[Tuple[int, int]], arg5: float,
-    arg6: Optional[float], arg7: Union[str, bytes], arg8: int, arg9: int, arg10: Any, /
+    arg6: Optional[float], arg7: Union[str, bytes], arg8: Optional[Tuple[float, float]], arg9: int, arg10: int,
+    arg11: Any, /
 ) -> Plan: ...
 def slice_stack(arg0: Optional[Plate], arg1: Plan, arg2: Union[str, bytes], arg3: int, arg4: Any, /) -> Stack: ...
 def mesh_doubts(arg0: Optional[Stack], arg1: Optional[Plate], /) -> List[Tuple[int, str]]: ...
@@ -448,10 +445,12 @@ def read_any(
     arg0: Any, arg1: Optional[float], arg2: bool, arg3: Union[str, bytes], arg4: int, arg5: int, arg6: int,
     arg7: Any, /
 ) -> Tuple[Union[Mesh, Stack], List[str]]: ...
-def filled(arg0: Optional[Stack], arg1: Union[str, bytes], arg2: int, arg3: Any, /) -> Tuple[Stack, List[str]]: ...
+def after_steps(
+    arg0: Optional[Stack], arg1: Union[str, bytes], arg2: Optional[Tuple[float, float]], arg3: int, arg4: Any, /
+) -> Tuple[Stack, List[str]]: ...
 def verify(
     arg0: Optional[Stack], arg1: Optional[Plate], arg2: Union[str, bytes], arg3: float, arg4: float,
-    arg5: Optional[float], arg6: Union[str, bytes], arg7: int, arg8: Any, /
+    arg5: Optional[float], arg6: Union[str, bytes], arg7: Optional[Tuple[float, float]], arg8: int, arg9: Any, /
 ) -> Dict[str, Any]: ...
 def verify_vectors(
     arg0: Any, arg1: Optional[Plate], arg2: Optional[ScanStrategy], arg3: Union[str, bytes], arg4: float,

@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from . import _arguments as check
 from . import _lamella
-from ._arguments import Coordinates, CutAt, Distance, FillRule, Matrix, Positive, Progress, Threads
+from ._arguments import Coordinates, CutAt, Distance, FillRule, InsetAndHeight, Matrix, Positive, Progress, Threads
 from ._errors import DefectError, UsageError
 from ._lamella import LayerStream, Stack
 from ._plates import Sliceable, plate_of
@@ -137,6 +137,7 @@ def slice(
     orient: bool = False,
     close_gaps: Optional[Positive] = None,
     fill: Optional[FillRule] = None,
+    bottom_offset: Optional[InsetAndHeight] = None,
     engine: EngineName = "sweep",
     strict: bool = False,
     max_memory: int = 0,
@@ -180,6 +181,9 @@ def slice(
     fill: unites contours that overlap. Material is where the winding number satisfies this rule: "nonzero", "evenodd" or
         "positive".
 
+    bottom_offset: (inset, height) in millimetres, against the bulge of the first layers in resin (elephant's foot):
+        contours move inwards by `inset` at the bottom of the part, or of the lowest part of a plate, and by less and less
+        up to `height` above it. Holes grow. Contours that overlap have to be united by `fill` first.
     engine: the algorithm, one of `engines`.
     strict: raises a DefectError for any defect of the file or its mesh.
     max_memory: largest number of bytes that reading a file and the list of layers may take; otherwise a LimitError is
@@ -236,8 +240,9 @@ def _prepared(given: Dict[str, Any]) -> Prepared:
     plate = plate_of("part", given["part"], given["unit_mm"], where, repairs, strict, max_memory, *execution)
     selection = (given["at"], given["z_range"], given["layers"], given["snap"])
     plan = _lamella.plan(
-        plate, _cut_of(given, plate), *selection, given["close_gaps"], given["fill"] or "none", max_memory, *execution
-    )
+        plate, _cut_of(given, plate), *selection, given["close_gaps"], given["fill"] or "none",
+        given["bottom_offset"], max_memory, *execution
+    )  # fmt: skip
     doubts = _named(plate, _lamella.near_faces(plate, plan, *execution))
     if strict and doubts:
         raise DefectError(with_arguments(doubts[0]))

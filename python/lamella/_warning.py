@@ -18,7 +18,7 @@ ARGUMENTS = {
     "`close_gaps_mm` ": "close_gaps=",
     "`include` ": "include=",
     "`orient`": "orient=True",
-    "`offset_mm`, `min_area_mm2` or `fill`": "fill",
+    "`offset_mm`, `min_area_mm2` or `fill`": "fill or bottom_offset",
     "converting them with `fill` nonzero": 'filled("nonzero")',
 }
 

@@ -289,12 +289,14 @@ std::vector<std::string> write_mesh_file(const std::string& path, const std::str
     return warnings;
 }
 
-/// Returns the stack after a fill rule for each of its parts, and a line for each finding.
-std::pair<StackPointer, std::vector<std::string>> filled(const Stack& stack, const std::string& rule,
-                                                         unsigned threads, const py::object& progress) {
+/// Returns the stack after these layer steps of each of its parts, and a line for each finding.
+std::pair<StackPointer, std::vector<std::string>> after_steps(const Stack& stack, const std::string& fill,
+                                                              const InsetAndHeight& bottom_offset,
+                                                              unsigned threads, const py::object& progress) {
+    const double plate_mm = stack.layers.empty() ? 0 : stack.layers.front()->get().bottom;
+    const LayerSteps steps{.fill = fill_rule(fill), .bottom = bottom_inset(bottom_offset, plate_mm)};
     return result_of(threads, progress, [&](const Execution& execution) {
-        ChangedStacks changed =
-            take_steps({.fill = fill_rule(rule)}, plain_parts(stack), {.execution = execution});
+        ChangedStacks changed = take_steps(steps, plain_parts(stack), {.execution = execution});
         std::uint64_t lost = 0;
         std::uint64_t contours = 0;
         std::vector<StackPointer> parts;
@@ -359,7 +361,7 @@ void add_findings(py::dict& fields, const Findings& findings, FindingOrigin chec
 
 py::dict verified(const Stack& stack, const PlatePointer& plate, const std::string& at, double snap_mm,
                   double tolerance, std::optional<double> close_gaps_mm, const std::string& fill,
-                  unsigned threads, const py::object& progress) {
+                  const InsetAndHeight& bottom_offset, unsigned threads, const py::object& progress) {
     if (holds_scan_vectors(stack))
         throw Error(ErrorKind::usage,
                     stack.path + " holds scan vectors, which lamella.verify_vectors checks");
@@ -370,6 +372,7 @@ py::dict verified(const Stack& stack, const PlatePointer& plate, const std::stri
                               .rounding = stack.rounding,
                               .tolerance_mm = tolerance};
         options.steps.fill = fill_rule(fill);
+        options.steps.bottom = bottom_inset(bottom_offset, 0); // the plate is the bottom of the mesh
         if (plate)
             set_reference(options, *plate, execution);
         LayerPart all{.layers = plain(stack.layers)};
@@ -528,7 +531,7 @@ void bind_files(py::module_& module) {
     stack.attr("_write_page") = py::cpp_function(&write_page, py::name("_write_page"), py::is_method(stack));
     module.def("read_layers", &read_stack);
     module.def("read_any", &read_either);
-    module.def("filled", &filled);
+    module.def("after_steps", &after_steps);
     module.def("verify", &verified);
     module.def("verify_vectors", &vectors_verified);
     module.def("compare", &compared);

@@ -86,6 +86,9 @@ MendedLayer CutPlan::mended(std::span<const Layer> bodies, const SourcePlate& pl
     PlateMaterial material = material_of(bodies, plate.mended.negatives, {.fill = fill}, limits);
     made.changes = material.changes;
     std::vector<Layer>& parts = material.parts;
+    // By itself, because the figures of the repair `fill` do not count it.
+    if (bottom.inset_mm != 0)
+        parts = take_steps_on_plane({.bottom = bottom}, parts, limits).parts;
     std::vector<LayerPointer> apart;
     Layer whole = parts.size() == 1 ? with_own_points(std::move(parts.front())) : merged(parts);
     made.points = whole.points.size();

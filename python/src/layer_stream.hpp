@@ -71,6 +71,7 @@ struct CutPlan {
     Layering layering;
     std::optional<double> close_gaps_mm = {};
     FillRule fill = FillRule::none;
+    BottomInset bottom = {};
 
     /// Returns the layer of the plate with its own points, mended as the plan asks for it.
     [[nodiscard]] MendedLayer mended(std::span<const Layer> bodies, const SourcePlate& plate,

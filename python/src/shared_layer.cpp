@@ -108,6 +108,11 @@ FillRule fill_rule(const std::string& name) {
     return FillRule::none;
 }
 
+BottomInset bottom_inset(const InsetAndHeight& given, double plate_mm) {
+    return given ? BottomInset{.inset_mm = given->first, .height_mm = given->second, .plate_mm = plate_mm}
+                 : BottomInset();
+}
+
 LayerStack plain(const std::vector<LayerPointer>& shared) {
     LayerStack layers;
     layers.reserve(shared.size());

@@ -8,6 +8,7 @@
 #include "lamella/core/point.hpp"
 #include "lamella/mesh/transform.hpp"
 #include "lamella/polygon/fill.hpp"
+#include "lamella/polygon/layer_steps.hpp"
 #include "lamella/polygon/nesting.hpp"
 
 #include "made.hpp"
@@ -18,6 +19,7 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace lamella::python {
@@ -114,6 +116,10 @@ using StackPointer = std::shared_ptr<Stack>;
 [[nodiscard]] PlaneRule rule_named(const std::string& name);
 /// Returns the rule of this name, which is one of the four.
 [[nodiscard]] FillRule fill_rule(const std::string& name);
+
+/// The inset of the first layers at the plate, and the height above it that none shrinks; or nothing.
+using InsetAndHeight = std::optional<std::pair<double, double>>;
+[[nodiscard]] BottomInset bottom_inset(const InsetAndHeight& given, double plate_mm);
 /// Returns the layers without copying their points, and without their hatch lines.
 [[nodiscard]] LayerStack plain(const std::vector<LayerPointer>& shared);
 /// Returns those of each part.

@@ -39,8 +39,8 @@ using IndexRange = std::optional<std::pair<std::uint64_t, std::uint64_t>>;
 /// Returns the plan that slice_file would use for the layering of a job.
 CutPlan plan_for(const PlatePointer& plate, const Cut& cut, const std::string& at, const ZRange& z_range,
                  const IndexRange& layers, double snap_mm, std::optional<double> close_gaps_mm,
-                 const std::string& fill, std::uint64_t max_memory, unsigned threads,
-                 const py::object& progress) {
+                 const std::string& fill, const InsetAndHeight& bottom_offset, std::uint64_t max_memory,
+                 unsigned threads, const py::object& progress) {
     FileJob job;
     job.max_memory = max_memory;
     job.layering = {.cut = cut,
@@ -49,7 +49,8 @@ CutPlan plan_for(const PlatePointer& plate, const Cut& cut, const std::string& a
                     .snap_mm = snap_mm};
     Plan plan = result_of(threads, progress,
                           [&](const Execution& execution) { return plan_of(job, plate->placed, execution); });
-    return {std::move(plan), std::move(job.layering), close_gaps_mm, fill_rule(fill)};
+    return {std::move(plan), std::move(job.layering), close_gaps_mm, fill_rule(fill),
+            bottom_inset(bottom_offset, plate->placed.box.min.z)};
 }
 
 /// Returns the number of layers of the whole plan, but at most one more than the index after the last of

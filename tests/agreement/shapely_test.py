@@ -14,6 +14,10 @@ from shapely.ops import polygonize, unary_union
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "app"))
 from program import ProgramTest, main  # noqa: E402
 
+# They have holes near the plate. Where they are absent, the bodies of the program are enough.
+PUBLIC_MESHES = [Path(__file__).resolve().parents[3] / "shared/meshes" / name for name in (
+    "prusa-i3__x-carriage.stl", "prusa-mini__MINI-z-carriage-front.stl", "voron2__Voron_Design_Cube_v7.stl",
+    "numpy-stl__rear_case.stl")]
 IS_MATERIAL = {"nonzero": lambda w: w != 0, "evenodd": lambda w: w % 2 != 0, "positive": lambda w: w > 0}
 
 
@@ -28,6 +32,10 @@ def winding(rings, x, y):
 
 def signed_area(ring):
     return math.copysign(Polygon(ring).area, 1 if LinearRing(ring).is_ccw else -1)
+
+
+def rings_of(layer):
+    return [list(zip(ring[0::2], ring[1::2])) for part in layer["parts"] for ring in part["rings"]]
 
 
 def off_by(a, b):
@@ -153,6 +161,41 @@ class Layers(ProgramTest):
                         expected = shape.buffer(sign * distance, resolution=64)
                         off = 1e-3 * (2 + distance) * (expected.length + 1)  # chords of either, and what GEOS leaves out
                         self.assertLess(polygons(rings).symmetric_difference(expected).area, off)
+
+    def test_first_layers_shrink_as_geos_shrinks_them(self):
+        """Elephant's foot: the inset falls from the plate to the height of the ramp, and holes grow."""
+        bodies = {"sheet": ("sheet", "--holes", "9"), "rook": ("rook",), "calibration": ("calibration",),
+                  "lattice": ("lattice", "--cells", "2"), "torus": ("torus",), "box": ("box", "--size", "10,8,3")}
+        for name, made in bodies.items():
+            self.succeed("make", *made, "-o", f"{name}.stl")
+        shared = [mesh for mesh in PUBLIC_MESHES if mesh.exists()]
+        for mesh, inset, height in itertools.product([self.path(f"{name}.stl") for name in bodies] + shared, (0.1, 0.3), (0.5, 1.5)):
+            for corners, join_style in (("round", 1), ("bevel", 3)):
+                with self.subTest(mesh=mesh.name, inset=inset, height=height, corners=corners):
+                    self.check_bottom(mesh, inset, height, corners, join_style)
+
+    def check_bottom(self, mesh, inset, height, corners, join_style):
+        cut = ["slice", mesh, "--layer-height", "0.2", "--layers", "0:12", "--fill", "nonzero"]
+        self.succeed(*cut, "-o", "plain.json")
+        self.succeed(*cut, "--bottom-offset", f"{inset}:{height}", "--offset-corners", corners, "-o", "shrunk.json")
+        plain, shrunk = (json.loads(self.bytes_of(f"{name}.json"))["layers"] for name in ("plain", "shrunk"))
+        self.assertEqual(len(plain), len(shrunk))
+        plate = plain[0]["bottom"]
+        changed = 0
+        for before, after in zip(plain, shrunk):
+            above = before["z"] - plate
+            if above >= height:
+                self.assertEqual(before, after)
+                continue
+            changed += 1
+            shape, found = (polygons(rings_of(layer)) for layer in (before, after))
+            distance = inset * (1 - above / height)
+            expected = shape.buffer(-distance, join_style=join_style, resolution=64)
+            # GEOS leaves out points that move the line by up to a hundredth of the distance; arcs have chords.
+            off = (0.01 * distance + 0.001) * shape.length + 1e-6
+            self.assertLess(found.symmetric_difference(expected).area, off)
+            self.assertLess(found.difference(shape).area, 1e-9 * (1 + shape.area))
+        self.assertGreater(changed, 1)
 
     def test_simplified_contours_stay_near_and_apart(self):
         layers, before = self.united(4)

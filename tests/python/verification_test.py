@@ -93,3 +93,11 @@ def test_filled_layers_agree_with_the_filled_sections_of_the_mesh():
     assert lamella.verify(stack, mesh, fill="nonzero").ok
     with pytest.raises(lamella.UsageError, match="^fill goes with a mesh, and none is given$"):
         lamella.verify(stack, fill="nonzero")
+
+
+def test_shrunken_first_layers_agree_with_shrunken_sections_of_the_mesh():
+    stack = lamella.slice(box_arrays(), 1, bottom_offset=(0.4, 3))
+    assert not lamella.verify(stack, box_arrays()).areas_agree
+    assert lamella.verify(stack, box_arrays(), bottom_offset=(0.4, 3)).ok
+    with pytest.raises(lamella.UsageError, match="^bottom_offset goes with a mesh, and none is given$"):
+        lamella.verify(stack, bottom_offset=(0.4, 3))

@@ -252,6 +252,14 @@ test('heights of every kind reach the program', async () => {
   assert.equal((await z({ adaptive: [1, 5], cusp: 5 })).length, 2);
 });
 
+test('the first layers shrink as in the program', async () => {
+  const mesh = await makeBody('rook');
+  writeFileSync(join(folder, 'rook.stl'), mesh.bytes);
+  native('slice', 'rook.stl', '-o', 'shrunk.cli', '--layer-height', '0.5', '--bottom-offset', '0.3:2');
+  const { bytes } = await sliceToFile(mesh, 'cli', { layerHeight: 0.5, bottomOffset: [0.3, 2] });
+  assert.ok(same(bytes, bytesOf('shrunk.cli')));
+});
+
 test('a diagnosis and a page are those of the program', async () => {
   const mesh = await makeBody('rook');
   writeFileSync(join(folder, 'rook.stl'), mesh.bytes);

@@ -180,6 +180,8 @@ export interface SliceOptions extends WriteOptions, Placement {
   closeGaps?: number;
   fill?: 'none' | 'nonzero' | 'evenodd' | 'positive';
   offset?: number;
+  /** Against the bulge of the first layers (elephant's foot): inwards by `inset` at the plate, by less up to `height` above it. */
+  bottomOffset?: readonly [inset: number, height: number];
   offsetCorners?: 'mitre' | 'bevel' | 'round';
   largestOnly?: boolean;
   minArea?: number;

@@ -229,7 +229,7 @@ function bytesOf(data) {
 
 // ---- Options: those of the program, in camel case. --------------------------------------------------------------------
 
-const ranges = new Set(['layers', 'zRange', 'adaptive']);
+const ranges = new Set(['layers', 'zRange', 'adaptive', 'bottomOffset']);
 /** Options that are files for the program, and the name of the file. */
 const texts = { zList: 'heights.json', strategy: 'strategy.toml' };
 const ofCall = new Set(['signal', 'onProgress', 'onOutput']);
