@@ -491,6 +491,13 @@ constexpr std::array kinds{
                               "{place}",
                        .many = "{count} settings of the job were left out, because the format cannot hold "
                                "them, the first: {place}"},
+    FindingDescription{.kind = FindingKind::changed_pixels,
+                       .name = "changed_pixels",
+                       .origin = FindingOrigin::output,
+                       .one = "{count} pixel {on_layers}, gets another grey value, by {largest:.0f} of 255: "
+                              "the format or the display has fewer levels of grey",
+                       .many = "{count} pixels {on_layers}, get other grey values, by up to {largest:.0f} of "
+                               "255: the format or the display has fewer levels of grey"},
     FindingDescription{.kind = FindingKind::flattened_triangles,
                        .name = "flattened_triangles",
                        .origin = FindingOrigin::output,

@@ -213,6 +213,43 @@ class Images(ProgramTest):
         manifest = json.loads(self.archive("part.zip").read("manifest.json"))
         self.assertEqual((manifest["width"], manifest["height"], manifest["antialias"]), (200, 150, 1))
 
+    def test_grey_values_that_a_format_does_not_have_are_counted(self):
+        self.succeed("make", "sphere", "--size", "5", "-o", "ball.stl")
+        self.succeed("slice", "ball.stl", "-o", "a.goo", "--layer-height", "0.5", "--display-size", "6,6", "--resolution", "60x60",
+                     "--antialias", "16")
+        self.assertEqual(self.succeed("convert", "a.goo", "same.goo").err, "")
+        self.succeed("convert", "a.goo", "a.zip", "--format", "png-zip")
+        before = self.archive("a.zip")
+        for name, options, levels in [("b.ctb", [], 128), ("b.cbddlp", ["--antialias", "8"], 5), ("b.pwmo", [], 16),
+                                      ("c.goo", ["--antialias", "1"], 2)]:
+            with self.subTest(name):
+                result = self.succeed("convert", "a.goo", name, *options)
+                self.succeed("convert", name, "b.zip", "--format", "png-zip")
+                after = self.archive("b.zip")
+                pixels, layers, largest, values = 0, 0, 0, set()
+                for i in range(10):
+                    rows = [b"".join(Image(archive.read(f"{i:05}.png")).rows) for archive in (before, after)]
+                    changes = [abs(a - b) for a, b in zip(*rows) if a != b]
+                    pixels, layers, largest = pixels + len(changes), layers + bool(changes), max([largest, *changes])
+                    values |= set(rows[1])
+                self.assertTrue(0 < len(values) <= levels)
+                self.assertGreater(pixels, 0)
+                text = " ".join(result.err.split())
+                self.assertRegex(text, f"{pixels} pixels on {layers} layers, [^:]*get other grey values, by up to {largest} of 255: "
+                                       "the format or the display has fewer levels of grey")
+                self.fail_with(4, "other grey values", "convert", "a.goo", "no" + name, *options, "--strict")
+                # What a format has holds its own values.
+                self.assertNotIn("grey values", self.succeed("convert", name, "again-" + name, *options).err)
+
+    def test_mirroring_that_a_format_cannot_say_is_reported(self):
+        for mirror, lost in ("x", {"b.ctb": [], "b.pwmo": []}), ("xy", {"b.ctb": ["y"], "b.pwmo": ["y"]}), ("none", {"b.ctb": [], "b.pwmo": ["x"]}):
+            self.succeed("slice", self.box(size="2,3,1"), "-o", "a.goo", "--layer-height", "0.5", "--display-size", "6,6",
+                         "--resolution", "60x60", "--mirror", mirror, "--antialias", "1")
+            for name, axes in lost.items():
+                text = self.succeed("convert", "a.goo", name).err
+                for axis in "xy":
+                    self.assertEqual(f"mirroring along {axis}" in text, axis in axes, (mirror, name, text))
+
     def test_standard_output_takes_a_job(self):
         result = self.succeed("slice", self.box(), "-o", "-", "--format", "sl1", "--layer-height", "5")
         self.assertEqual(zipfile.ZipFile(io.BytesIO(result.out)).namelist()[0], "layers00000.png")

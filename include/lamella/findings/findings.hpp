@@ -88,6 +88,7 @@ enum class FindingKind : std::uint32_t {
     hidden_hatch_lines,    ///< layers of a page that are shown without their hatches
     thinned_layers,        ///< layers of a page that are shown with fewer points
     unwritten_settings,    ///< settings of a job for a resin printer
+    changed_pixels,        ///< pixels of images whose grey value the format or the display does not have
     flattened_triangles,   ///< triangles of a mesh that lose their area or a corner by rounding
 
     // Irregularities of a slice file, and how its reader treated them.

@@ -57,8 +57,12 @@ class AnycubicWriter final : public ResinFile {
   public:
     AnycubicWriter(const std::string& path, const LayerFileInfo& info, const LayerWriteOptions& options,
                    const ResinPrinter& printer)
-        : ResinFile(path, info, options, {.name = "an Anycubic file", .stages = !is_older(printer)}, printer,
-                    {pw0_runs()}, AnycubicPlaces(is_older(printer), info.layers).images),
+        : ResinFile(path, info, options,
+                    {.name = "an Anycubic file",
+                     .stages = !is_older(printer),
+                     .mirror_x = false,
+                     .mirror_y = false},
+                    printer, {pw0_runs()}, AnycubicPlaces(is_older(printer), info.layers).images),
           older_(is_older(printer)), places_(older_, info.layers), table_(ByteOrder::little) {}
 
   private:

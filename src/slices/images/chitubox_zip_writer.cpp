@@ -22,7 +22,7 @@ long long milliseconds(double seconds) {
 class ChituboxZipWriter final : public ResinArchive {
   public:
     ChituboxZipWriter(const std::string& path, const LayerFileInfo& info, const LayerWriteOptions& options)
-        : ResinArchive(path, info, options, {.name = "a Chitubox zip"},
+        : ResinArchive(path, info, options, {.name = "a Chitubox zip", .mirror_y = false},
                        printer_for(info, options, "chitubox-zip")) {}
 
   private:

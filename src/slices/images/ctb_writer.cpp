@@ -95,7 +95,8 @@ class ChituboxWriter final : public ResinFile {
         : ResinFile(path, info, options,
                     {.name = kind.ctb() ? "a ctb file" : "a cbddlp file",
                      .own_exposures = true,
-                     .stages = kind.version >= 4},
+                     .stages = kind.version >= 4,
+                     .mirror_y = false},
                     printer, codes_of(kind),
                     ChituboxPlaces(kind, machine_name_of(info, printer).size(), info.layers).end),
           kind_(kind), places_(kind, machine_name().size(), info.layers), tables_(kind.sets) {}

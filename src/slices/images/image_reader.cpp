@@ -182,8 +182,7 @@ void add_sets(std::span<const RunImage> sets, RunBuilder& image) {
             to = std::min(to, run.end);
             white += run.value != 0 ? 1 : 0;
         }
-        const std::size_t value = white == 0 ? 0 : white * 256 / sets.size() - 1;
-        image.add(static_cast<std::uint8_t>(value), to - from);
+        image.add(grey_of_sets(white, sets.size()), to - from);
         for (std::size_t set = 0; set < sets.size(); ++set)
             at[set] += sets[set].runs[at[set]].end == to ? 1 : 0;
         from = to;

@@ -73,7 +73,12 @@ void decode_layer(DecodeRuns& decode, std::string_view code, const CodePlace& pl
 /// Returns one of the images in black and white of a layer. Throws Error{input} unless it is complete.
 [[nodiscard]] RunImage whole_set(RunBuilder& set, const CodePlace& place);
 
-/// Adds up such images: a pixel that is white in c of n images gets the value c 256 / n - 1.
+/// Returns the value of a pixel that is white in some of these images.
+[[nodiscard]] constexpr std::uint8_t grey_of_sets(std::size_t white, std::size_t sets) noexcept {
+    return static_cast<std::uint8_t>(white == 0 ? 0 : white * 256 / sets - 1);
+}
+
+/// Adds up such images.
 void add_sets(std::span<const RunImage> sets, RunBuilder& image);
 
 /// Decodes as many such images from one code, in which they follow one another, and adds them up.

@@ -2,10 +2,12 @@
 
 #include "lamella/core/error.hpp"
 
+#include "slices/images/image_reader.hpp"
 #include "slices/images/layer_images.hpp"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cassert>
 #include <limits>
 #include <utility>
@@ -47,6 +49,15 @@ ResinWriter::DrawnLayer ResinFile::drawn(const Plane& plane, std::uint64_t index
     return {areas, [this, images = std::move(images)](const ResinLayer& layer, Completions& after) {
                 put_layer(layer, images, after);
             }};
+}
+
+/// Several codes are images in black and white, from which readers make grey.
+std::uint8_t ResinFile::read_back(std::uint8_t value) const noexcept {
+    if (codes_.size() == 1)
+        return codes_.front().read_back[value];
+    const auto white = std::count_if(codes_.begin(), codes_.end(),
+                                     [&](const RunCode& code) { return code.read_back[value] > 0; });
+    return grey_of_sets(static_cast<std::size_t>(white), codes_.size());
 }
 
 void ResinFile::end_job(const ResinTotals& totals) {

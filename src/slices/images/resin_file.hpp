@@ -48,6 +48,7 @@ class ResinFile : public ResinWriter {
     void check_32_bits(std::uint64_t position) const;
 
   private:
+    std::uint8_t read_back(std::uint8_t value) const noexcept final;
     DrawnLayer drawn(const Plane& plane, std::uint64_t index) final;
     void end_job(const ResinTotals& totals) final;
 

@@ -3,11 +3,14 @@
 #include "lamella/core/error.hpp"
 
 #include "contour/same_height.hpp"
+#include "slices/images/image_reader.hpp"
 #include "slices/images/layer_images.hpp"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <utility>
 
 namespace lamella {
@@ -75,6 +78,38 @@ ResinWriter::ResinWriter(const LayerFileInfo& info, const LayerWriteOptions& opt
       bottom_(info.bottom), part_mm_(info.box.max.z - info.bottom) {
     if (!kind.own_exposures && options.resin_of_file && !options.resin.ranges.empty())
         leave_out("exposures of single layers");
+    if (options.resin_of_file)
+        check_mirroring();
+}
+
+/// Counts mirroring of which readers of the file would not know.
+void ResinWriter::check_mirroring() {
+    const ResinPrinter* const known = known_printer(machine_name_);
+    if (!kind_.mirror_x && display_.mirror_x != (known == nullptr || known->mirror_x))
+        leave_out("mirroring along x");
+    if (!kind_.mirror_y && display_.mirror_y != (known != nullptr && known->mirror_y))
+        leave_out("mirroring along y");
+}
+
+/// Returns the pixels of an image that the file or the display changes.
+Finding ResinWriter::changed_pixels(const Plane& plane) const {
+    Finding found{.kind = FindingKind::changed_pixels};
+    if (!plane.image)
+        return found;
+    std::uint64_t from = 0;
+    for (const ImageRun& run : plane.image->runs) {
+        const bool black_and_white = raster().antialias == 1;
+        const std::uint8_t drawn = black_and_white ? (run.value >= bright_from ? 255 : 0) : run.value;
+        const int change = std::abs(int{read_back(drawn)} - int{run.value});
+        found.count += change > 0 ? run.end - from : 0;
+        found.largest = std::max(found.largest, static_cast<double>(change));
+        from = run.end;
+    }
+    if (found.count > 0) {
+        found.layers = 1;
+        found.first_z = plane.polylines.front().z;
+    }
+    return found;
 }
 
 void ResinWriter::leave_out(std::string setting) {
@@ -86,12 +121,13 @@ double ResinWriter::machine_mm() const noexcept {
 }
 
 OrderedWriter::Write ResinWriter::formatted(const Plane& plane) {
-    return [this, image = drawn(plane, plane.polylines.front().index),
+    return [this, changed = changed_pixels(plane), image = drawn(plane, plane.polylines.front().index),
             seen = relief_.spans(plane.polylines)](const PlanePosition& offset, Completions& after) {
         relief_.add(seen);
         check_heights(offset);
         const ResinLayer layer = counted(offset, image.areas.covered * display_.pixel_mm2());
         add_loss(unseen_material(offset.z, image.areas, display_.pixel_mm2()));
+        add_loss(changed);
         image.write(layer, after);
     };
 }

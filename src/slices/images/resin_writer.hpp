@@ -41,6 +41,10 @@ struct ResinJobKind {
     bool own_exposures = true;
     /// False if the plate moves in one stage.
     bool stages = true;
+    /// False if the file does not say whether the display is mirrored along this axis. Readers then take it
+    /// from the list of printers.
+    bool mirror_x = true;
+    bool mirror_y = true;
 };
 
 struct ResinLayer {
@@ -83,6 +87,8 @@ class ResinWriter : public OrderedWriter {
     /// Draws and encodes the image of a layer. Called from any threads. `index` is that of the layer, which
     /// usually is ResinLayer::number.
     [[nodiscard]] virtual DrawnLayer drawn(const Plane& plane, std::uint64_t index) = 0;
+    /// Returns the value that readers get for a pixel.
+    [[nodiscard]] virtual std::uint8_t read_back(std::uint8_t value) const noexcept { return value; }
     /// Ends the file and gives it its name.
     virtual void end_job(const ResinTotals& totals) = 0;
     /// Counts a setting of a converted file that the format cannot hold.
@@ -105,6 +111,8 @@ class ResinWriter : public OrderedWriter {
                 const ResinPrinter& printer, const DisplayGrid& display);
     Write formatted(const Plane& plane) final;
     void end_file() final;
+    void check_mirroring();
+    [[nodiscard]] Finding changed_pixels(const Plane& plane) const;
     void check_heights(const PlanePosition& offset);
     [[nodiscard]] ResinLayer counted(const PlanePosition& offset, double area_mm2);
 

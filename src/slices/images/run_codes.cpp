@@ -20,6 +20,15 @@ char* put_low_bytes(char* out, std::uint64_t number, unsigned bytes) noexcept {
     return out;
 }
 
+/// Returns the value that 7 bits of grey mean.
+constexpr unsigned shown_in_ctb(unsigned grey) noexcept {
+    return grey == 0 ? 0 : 2 * grey + 1;
+}
+/// Returns the value that 4 bits of grey mean.
+constexpr unsigned shown_in_pw0(unsigned grey) noexcept {
+    return 17 * grey;
+}
+
 template <class Joined>
 std::array<std::uint8_t, 256> joined_by(const Joined& joined) {
     std::array<std::uint8_t, 256> values{};
@@ -173,6 +182,7 @@ std::optional<RunFault> decode_goo_chunks(CodeBytes code, RunBuilder& image) {
 
 const RunCode& goo_runs() {
     static const RunCode code{.joined = joined_by([](unsigned v) { return v; }),
+                              .read_back = joined_by([](unsigned v) { return v; }),
                               .put = put_goo_run,
                               .begin = goo_begin,
                               .close = put_goo_checksum};
@@ -180,17 +190,22 @@ const RunCode& goo_runs() {
 }
 
 const RunCode& ctb_runs() {
-    static const RunCode code{.joined = joined_by([](unsigned v) { return v; }), .put = put_ctb_run};
+    static const RunCode code{.joined = joined_by([](unsigned v) { return v; }),
+                              .read_back = joined_by([](unsigned v) { return shown_in_ctb(v >> 1U); }),
+                              .put = put_ctb_run};
     return code;
 }
 
 const RunCode& pw0_runs() {
-    static const RunCode code{.joined = joined_by([](unsigned v) { return v >> 4U; }), .put = put_pw0_run};
+    static const RunCode code{.joined = joined_by([](unsigned v) { return v >> 4U; }),
+                              .read_back = joined_by([](unsigned v) { return shown_in_pw0(v >> 4U); }),
+                              .put = put_pw0_run};
     return code;
 }
 
 RunCode bit_runs(std::uint8_t threshold) {
     return {.joined = joined_by([threshold](unsigned v) { return v >= threshold ? 1 : 0; }),
+            .read_back = joined_by([threshold](unsigned v) { return v >= threshold ? 255 : 0; }),
             .put = put_bit_run};
 }
 
@@ -245,7 +260,7 @@ std::optional<RunFault> decode_ctb_runs(std::string_view bytes, RunBuilder& imag
             pixels = std::uint64_t{head & masks[more]} << (8 * more);
             pixels |= code.take(more);
         }
-        const unsigned shown = grey == 0 ? 0 : 2 * grey + 1;
+        const unsigned shown = shown_in_ctb(grey);
         if (auto fault = add_run(image, static_cast<std::uint8_t>(shown), pixels, at))
             return fault;
     }
@@ -265,7 +280,7 @@ std::optional<RunFault> decode_pw0_runs(std::string_view bytes, RunBuilder& imag
                 return cut_off(at);
             pixels = pixels << 8U | code.take();
         }
-        if (auto fault = add_run(image, static_cast<std::uint8_t>(17 * grey), pixels, at))
+        if (auto fault = add_run(image, static_cast<std::uint8_t>(shown_in_pw0(grey)), pixels, at))
             return fault;
     }
     return std::nullopt;

@@ -17,6 +17,8 @@ namespace lamella {
 struct RunCode {
     /// The value of a run for each value of a pixel: neighbours are joined if these values are equal.
     std::array<std::uint8_t, 256> joined{};
+    /// The value that a reader gets for each value of a pixel.
+    std::array<std::uint8_t, 256> read_back{};
     /// Appends a run of pixels.
     void (*put)(std::uint8_t value, std::uint64_t pixels, ByteBuffer& out) = nullptr;
     /// Bytes before the first run.
