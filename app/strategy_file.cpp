@@ -7,6 +7,7 @@
 
 #include "numbers.hpp"
 #include "toml_file.hpp"
+#include "toml_tables.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -31,95 +32,9 @@ constexpr std::string_view hatch_key = "hatch";       ///< of skins and supports
 
 // ------------------------------------------------------------------------------------------------ read
 
-/// Where values are, by their paths.
-using Locations = std::map<std::string, std::string>;
-
-/// A value of a TOML file. Notes the locations of all values that are read.
-class FileValue : public StrategyValue {
-  public:
-    FileValue(const TomlValue& value, Locations& locations) : value_(value), locations_(locations) {}
-
-    void each(const std::string& name, const Visit& visit) const override {
-        const auto* const table = as<TomlTable>(name);
-        if (table == nullptr)
-            refuse_value(value_, name, fmt::format("a table: [{}]", name));
-        for (const TomlEntry& entry : *table)
-            visit(entry.key, FileValue(entry.value, locations_));
-    }
-
-    double number(const std::string& name) const override {
-        if (const auto* number = as<double>(name))
-            return *number + 0.0; // turns -0 into 0, as it is written in files
-        if (const auto* whole = as<std::int64_t>(name))
-            return static_cast<double>(*whole);
-        refuse_value(value_, name, "a number");
-    }
-
-    std::uint64_t count(const std::string& name, std::uint64_t most) const override {
-        const auto* const whole = as<std::int64_t>(name);
-        if (whole != nullptr && *whole >= 0 && static_cast<std::uint64_t>(*whole) <= most)
-            return static_cast<std::uint64_t>(*whole);
-        refuse_value(value_, name,
-                     fmt::format("a whole number, 0 or more{}",
-                                 value_.as<double>() != nullptr ? ", written without a point" : ""));
-    }
-
-    bool flag(const std::string& name) const override {
-        if (const auto* const flag = as<bool>(name))
-            return *flag;
-        refuse_value(value_, name, "true or false");
-    }
-
-    std::string choice(const std::string& name, const std::vector<std::string>& names) const override {
-        const auto* const text = as<std::string>(name);
-        if (text != nullptr && std::find(names.begin(), names.end(), *text) != names.end())
-            return *text;
-        refuse_value(value_, name,
-                     fmt::format("one of {}{}", fmt::join(names, ", "),
-                                 text == nullptr ? "" : did_you_mean(*text, names)));
-    }
-
-    std::string set_name(const std::string& name) const override {
-        const auto* const text = as<std::string>(name);
-        if (text == nullptr || text->empty())
-            refuse_value(value_, name, "the name of a parameter set");
-        return *text;
-    }
-
-    [[noreturn]] void refuse_key(const std::string& name, const std::string& key,
-                                 const std::vector<std::string>& known) const override {
-        refuse_toml(value_.location,
-                    fmt::format("{} has no \"{}\"{}", name.empty() ? "a strategy" : fmt::format("[{}]", name),
-                                excerpt(key), meant_text(key, known)));
-    }
-
-    [[noreturn]] void refuse_set(const std::string& name, const std::string& set,
-                                 const std::vector<std::string>& known) const override {
-        refuse_toml(locations_.at(name),
-                    fmt::format("{} is \"{}\", but there is no [{}.{}]{}", name, excerpt(set), parameters_key,
-                                excerpt(set), meant_text(set, known)));
-    }
-
-    [[noreturn]] void refuse_unused(const std::string& set,
-                                    const std::vector<std::string>& used) const override {
-        const std::string name = fmt::format("{}.{}", parameters_key, set);
-        refuse_toml(locations_.at(name),
-                    fmt::format("[{}] is used nowhere{}", excerpt(name), meant_text(set, used)));
-    }
-
-  private:
-    template <class Kind>
-    const Kind* as(const std::string& name) const {
-        locations_[name] = value_.location;
-        return value_.as<Kind>();
-    }
-
-    const TomlValue& value_;
-    Locations& locations_;
-};
-
 /// Returns the name in the file of a field that the library names: that of a parameter set if it is there.
-std::string name_in_file(const std::string& field, const ScanStrategy& strategy, const Locations& locations) {
+std::string name_in_file(const std::string& field, const ScanStrategy& strategy,
+                         const TomlLocations& locations) {
     std::string name = field;
     for_each_set(strategy, [&](const std::string& rule, const ParameterSet& set) {
         if (!field.starts_with(rule + "."))
@@ -134,7 +49,7 @@ std::string name_in_file(const std::string& field, const ScanStrategy& strategy,
 
 /// Checks the strategy. Adds to the library's error the location of the field that it names or, if the file
 /// does not have the field, that of its table.
-void check_ranges(const ScanStrategy& strategy, const Locations& locations) {
+void check_ranges(const ScanStrategy& strategy, const TomlLocations& locations) {
     try {
         check_strategy(strategy);
     } catch (const Error& error) {
@@ -201,9 +116,9 @@ Json skin_json(const SkinRule& rule) {
 } // namespace
 
 ScanStrategy read_strategy(const std::string& path) {
-    Locations locations;
+    TomlLocations locations;
     const TomlValue file{{}, read_toml(path)};
-    ScanStrategy strategy = strategy_of(FileValue(file, locations));
+    ScanStrategy strategy = strategy_of(TomlTables(file, locations, "a strategy"));
     check_ranges(strategy, locations);
     return strategy;
 }

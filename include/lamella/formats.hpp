@@ -17,6 +17,7 @@
 #include "lamella/raster/image.hpp"
 #include "lamella/slices/layer_page.hpp"
 #include "lamella/slices/layer_writer.hpp"
+#include "lamella/slices/resin_fields.hpp"
 
 // Hash files, write small files, and remove temporary files when a signal ends the program.
 #include "lamella/container/file_hash.hpp"

@@ -11,6 +11,7 @@
 #include "lamella/core/execution.hpp"
 #include "lamella/core/printable.hpp"
 #include "lamella/core/suggest.hpp"
+#include "lamella/core/table_value.hpp"
 #include "lamella/core/unit_circle.hpp"
 #include "lamella/core/version.hpp"
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from functools import partial
-from typing import Annotated, Any, Iterable, Iterator, List, Optional, Sequence, Tuple, Union
+from typing import Annotated, Any, Iterable, Iterator, List, Mapping, Optional, Sequence, Tuple, Union
 
 import numpy as np
 import numpy.typing as npt
@@ -16,8 +16,9 @@ from ._arguments import (
     Threads, Words, Writable,
 )  # fmt: skip
 from ._errors import CancelledError, DefectError, InputError, UsageError
-from ._lamella import Exposure, Layer, LayerStream, Mesh, Stack
+from ._lamella import Exposure, Layer, LayerStream, Mesh, ResinSettings, Stack
 from ._meshes import MeshLike, as_mesh, is_mesh
+from ._rules import tables_of
 from ._scanning import ScanLayer, ScanStream
 from ._warning import parts_lost, warn, with_arguments
 
@@ -28,7 +29,7 @@ OPTIONS = {
     "units_mm": "units", "short_form": "short_form", "pixel_mm": "picture", "pixels": "picture", "display_mm": "picture",
     "printer": "picture", "orientation": "picture", "mirror": "picture", "antialias": "picture", "gamma": "picture",
     "grey_curve": "picture", "part_colours": "part_colours",
-    "exposure_s": "exposure", "first_exposure_s": "exposure", "fade_layers": "exposure",
+    "resin": "exposure", "exposure_s": "exposure", "first_exposure_s": "exposure", "fade_layers": "exposure",
 }  # fmt: skip
 # Formats that store the heights of layers unchanged, or no heights. They accept layers without thickness.
 WITHOUT_THICKNESS = ("json", "npz", "raw", "dxf", "geojson", "svg-layers", "png", "png-zip")
@@ -70,6 +71,18 @@ def _part_colours(name: str, colours: Any) -> Tuple[Tuple[int, ...], ...]:
     return () if colours is True else check.several(name, colours, None, words, one)
 
 
+def _resin_settings(name: str, settings: Any) -> ResinSettings:
+    if isinstance(settings, ResinSettings):  # which this function made
+        return settings
+    if isinstance(settings, Mapping):
+        return ResinSettings(name.encode(), settings)
+    if not check.is_file(settings):
+        check.refuse_type(name, "a TOML file, or a dict of its settings", settings)
+    path, text = check.content(name, settings)
+    return ResinSettings(os.fsencode(path), tables_of(path, text))
+
+
+Resin = Annotated[Union[Mapping[str, Any], Readable], _resin_settings]
 GreyCurve = Annotated[Sequence[Tuple[float, float]], _grey_curve]
 PartColours = Annotated[Union[bool, Sequence[Tuple[int, int, int]]], _part_colours]
 Pixels = Annotated[Tuple[int, int], _columns_and_rows]
@@ -186,6 +199,7 @@ def write(
     gamma: Optional[Positive] = None,
     grey_curve: Optional[GreyCurve] = None,
     part_colours: Optional[PartColours] = None,
+    resin: Optional[Resin] = None,
     exposure_s: Optional[Positive] = None,
     first_exposure_s: Optional[Positive] = None,
     fade_layers: Optional[Count] = None,
@@ -221,8 +235,11 @@ def write(
         are interpolated; [(0, 60)] makes 60 the darkest grey.
     part_colours: (red, green, blue) from 0 to 255 for each part, or True for colours that are chosen (png, png-zip): each
         pixel has the colour of the part in which its centre lies, and is transparent outside of all parts.
+    resin: settings of the resin (formats of resin printers): a TOML file, as `lamella resin show` prints one (needs Python
+        3.11), or a dict of the same keys, such as {"exposure_s": 2.5, "exposure_ranges": {"0:0.4": 35}}. Values not
+        given are those of the printer.
     exposure_s, first_exposure_s: exposure time in seconds of a layer, and of each of the first layers (formats of resin
-        printers).
+        printers), instead of those of `resin`.
     fade_layers: number of layers over which the first exposure fades to the normal one; sl1, sl1s: 10 by default.
 
     strict: raises a DefectError instead of issuing a DefectWarning, and writes no file.
@@ -430,6 +447,7 @@ def convert(
     gamma: Optional[Positive] = None,
     grey_curve: Optional[GreyCurve] = None,
     part_colours: Optional[PartColours] = None,
+    resin: Optional[Resin] = None,
     exposure_s: Optional[Positive] = None,
     first_exposure_s: Optional[Positive] = None,
     fade_layers: Optional[Count] = None,

@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from ._arguments import Corners, FillRule, Readable
 from ._pixels import Centre, PixelType, Voxels
-from ._methods import ContourDefect, Contours, Window
+from ._methods import ContourDefect, Contours, PrintCheck, Window
 
 __version__: str
 
@@ -230,6 +230,10 @@ class Stack:
         progress: Optional[Callable[[str, int, int], object]] = None
     ) -> Voxels: ...
     def at(self, z: float) -> Layer: ...
+    def check(
+        self, *, touch: float = 0, overhang_angle: float = 45, threads: int = 0,
+        progress: Optional[Callable[[str, int, int], object]] = None
+    ) -> PrintCheck: ...
     def _repr_html_(self) -> str: ...
     def _write_page(self, arg0: Union[str, bytes], /) -> List[str]: ...
     def _checked(self, arg0: float, arg1: float, arg2: int, arg3: Any, /) -> Dict[str, Any]: ...
@@ -463,6 +467,9 @@ def write_mesh(
     arg0: Union[str, bytes], arg1: Union[str, bytes], arg2: Optional[Mesh], arg3: Union[str, bytes], arg4: bool,
     arg5: bool, /
 ) -> Tuple[List[str], bytes]: ...
+
+class ResinSettings:
+    def __init__(self, arg0: Union[str, bytes], arg1: Any, /) -> None: ...
 
 class StackWriter:
     def write(self, arg0: Iterable[Iterable[Layer]], arg1: int, /) -> None: ...

@@ -20,7 +20,7 @@ def tables_of(path: str, text: bytes) -> Dict[str, Any]:
     try:
         import tomllib
     except ImportError as error:
-        raise ImportError("strategies as files need Python 3.11; a dict of the same tables will do") from error
+        raise ImportError("TOML files need Python 3.11; a dict of the same tables will do") from error
     try:
         return tomllib.loads(text.decode("utf-8-sig"))  # skips a byte order mark
     except ValueError as error:

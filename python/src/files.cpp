@@ -9,11 +9,13 @@
 #include "lamella/polygon/layer_steps.hpp"
 #include "lamella/scan/strategy.hpp"
 #include "lamella/slices/layer_writer.hpp"
+#include "lamella/slices/resin_fields.hpp"
 
 #include "bindings.hpp"
 #include "gil_release.hpp"
 #include "input.hpp"
 #include "placing.hpp"
+#include "python_tables.hpp"
 #include "run.hpp"
 #include "shared_layer.hpp"
 #include "source_mesh.hpp"
@@ -226,12 +228,28 @@ LayerWriteOptions write_options(const py::dict& given) {
         for (const auto& [red, green, blue] : *colours)
             image.part_colours.push_back({.red = red, .green = green, .blue = blue});
     }
-    options.resin.exposure_s = option<double>(given, "exposure_s");
-    options.resin.bottom_exposure_s = option<double>(given, "first_exposure_s");
-    options.resin.transition_layers = option<std::uint32_t>(given, "fade_layers");
+    ResinSettings& resin = options.resin;
+    resin = option<ResinSettings>(given, "resin").value_or(resin);
+    if (const auto exposure_s = option<double>(given, "exposure_s"))
+        resin.exposure_s = exposure_s;
+    if (const auto first_exposure_s = option<double>(given, "first_exposure_s"))
+        resin.bottom_exposure_s = first_exposure_s;
+    if (const auto fade_layers = option<std::uint32_t>(given, "fade_layers"))
+        resin.transition_layers = fade_layers;
     options.page.viewer = viewer_page();
     options.page.no_viewer = no_viewer();
     return options;
+}
+
+/// Returns the settings of a dict. `source` is the name of the argument or of the file.
+ResinSettings resin_settings_of_tables(const std::string& source, const py::object& tables) {
+    const ResinSettings settings = resin_settings_of(PythonTables(source, tables));
+    try {
+        check_resin_settings(settings);
+    } catch (const Error& error) {
+        throw Error(error.kind(), source + ": " + error.what());
+    }
+    return settings;
 }
 
 /// Returns the formats that take an option of LayerWriteOptions, by its name in LayerFormat.
@@ -537,6 +555,7 @@ void bind_files(py::module_& module) {
     module.def("compare", &compared);
     stack.attr("_checked") = py::cpp_function(&print_checked, py::name("_checked"), py::is_method(stack));
     module.def("write_mesh", &write_mesh);
+    py::class_<ResinSettings>(module, "ResinSettings").def(py::init(&resin_settings_of_tables));
     py::class_<StackWriter>(module, "StackWriter")
         .def("write", &StackWriter::write)
         .def("finish", &StackWriter::finish)

@@ -7,6 +7,7 @@
 #include "checks.hpp"
 #include "classes.hpp"
 #include "made.hpp"
+#include "python_tables.hpp"
 #include "texts.hpp"
 
 #include <pybind11/stl.h>
@@ -24,83 +25,8 @@ namespace py = pybind11;
 namespace lamella::python {
 namespace {
 
-/// A value of a dict with the tables of a strategy, or of an attribute. `source` begins the texts of errors:
-/// the name of the argument or of the file; "" for an attribute.
-class PythonValue : public StrategyValue {
-  public:
-    PythonValue(std::string source, py::object value)
-        : source_(std::move(source)), value_(std::move(value)) {}
-
-    void each(const std::string& name, const Visit& visit) const override {
-        const py::object mapping = py::module_::import("collections.abc").attr("Mapping");
-        if (!py::isinstance(value_, mapping))
-            static_cast<void>(checked<py::object>("refuse_type", place(name), "a table", value_));
-        for (const py::handle item : value_.attr("items")()) {
-            const auto [key, value] = item.cast<std::pair<py::object, py::object>>();
-            visit(checked<std::string>("label", place(name), key), PythonValue(source_, value));
-        }
-    }
-
-    double number(const std::string& name) const override {
-        return checked<double>("number", place(name), value_);
-    }
-    std::uint64_t count(const std::string& name, std::uint64_t most) const override {
-        return checked<std::uint64_t>("whole", place(name), value_, 0, most);
-    }
-    bool flag(const std::string& name) const override { return checked<bool>("flag", place(name), value_); }
-    std::string choice(const std::string& name, const std::vector<std::string>& names) const override {
-        return checked<std::string>("choice", place(name), value_, names);
-    }
-
-    std::string set_name(const std::string& name) const override {
-        auto found = checked<std::string>("label", place(name), value_);
-        if (found.empty())
-            refuse("{}: expected the name of parameters, found an empty text", place(name));
-        return found;
-    }
-
-    [[noreturn]] void refuse_key(const std::string& name, const std::string& key,
-                                 const std::vector<std::string>& known) const override {
-        const auto near = checked<std::string>("nearest", path_text(key), known);
-        refuse("{}: there is no {}; {}", place(name), excerpt(key),
-               near.empty() ? "there are " + joined(known) : "did you mean " + near + "?");
-    }
-    [[noreturn]] void refuse_set(const std::string& name, const std::string& set,
-                                 const std::vector<std::string>& known) const override {
-        refuse("{}: there are no parameters {}; there are {}", place(name), excerpt(set),
-               excerpt(joined(known)));
-    }
-    [[noreturn]] void refuse_unused(const std::string& set,
-                                    const std::vector<std::string>& used) const override {
-        refuse("{}: the parameters {} are used nowhere; there are {}", place({}), excerpt(set),
-               path_text(joined(used)));
-    }
-
-  private:
-    [[nodiscard]] py::str place(const std::string& name) const {
-        return path_text(source_ + (source_.empty() || name.empty() ? "" : ": ") + lamella::excerpt(name));
-    }
-    static py::object excerpt(const std::string& text) {
-        return checked<py::object>("excerpt", path_text(text));
-    }
-    static std::string joined(const std::vector<std::string>& names) {
-        std::string text;
-        for (const std::string& name : names)
-            text += (text.empty() ? "" : ", ") + name;
-        return text;
-    }
-    template <class... Items>
-    [[noreturn]] static void refuse(const char* text, const Items&... items) {
-        const py::object encoded = py::module_::import("os").attr("fsencode")(py::str(text).format(items...));
-        throw Error(ErrorKind::usage, encoded.cast<std::string>());
-    }
-
-    std::string source_;
-    py::object value_;
-};
-
 ScanStrategy strategy_of_tables(const py::bytes& source, const py::object& tables) {
-    ScanStrategy strategy = strategy_of(PythonValue(source, tables));
+    ScanStrategy strategy = strategy_of(PythonTables(source, tables));
     check_strategy(strategy);
     return strategy;
 }
@@ -153,7 +79,7 @@ py::class_<Rule> bind_rule(py::module_& module, const char* name, const char* ab
                 cls.def_property(
                     key, [member](const Rule& rule) { return value_of(rule.*member); },
                     [member, key](Rule& rule, const py::object& value) {
-                        take(PythonValue({}, value), key, rule.*member);
+                        take(PythonTables({}, value), key, rule.*member);
                     },
                     text.c_str());
             },

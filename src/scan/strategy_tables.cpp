@@ -14,14 +14,13 @@ namespace lamella {
 namespace {
 
 /// A table within another one, and the function that reads it.
-using Inner =
-    std::pair<std::string, std::function<void(const std::string& name, const StrategyValue& value)>>;
+using Inner = std::pair<std::string, std::function<void(const std::string& name, const TableValue& value)>>;
 
 /// Reads a table: fields of a rule, and other tables. `name` is the path of the table.
 template <class Rule>
-void read_table(const std::string& name, const StrategyValue& table, Rule& rule,
+void read_table(const std::string& name, const TableValue& table, Rule& rule,
                 std::span<const StrategyField<Rule>> fields, const std::vector<Inner>& others) {
-    table.each(name, [&](const std::string& key, const StrategyValue& value) {
+    table.each(name, [&](const std::string& key, const TableValue& value) {
         const std::string path = name.empty() ? key : name + "." + key;
         const auto field = std::find_if(fields.begin(), fields.end(),
                                         [&](const StrategyField<Rule>& one) { return one.name == key; });
@@ -45,10 +44,10 @@ void read_table(const std::string& name, const StrategyValue& table, Rule& rule,
 /// A rule of lines. Of its parameter set only the name is read; the tables of sets may follow.
 template <class Rule>
 Inner lines(const char* key, Rule& rule, std::span<const StrategyField<Rule>> fields) {
-    const auto read_name = [&rule](const std::string& name, const StrategyValue& value) {
-        rule.parameters.name = value.set_name(name);
+    const auto read_name = [&rule](const std::string& name, const TableValue& value) {
+        rule.parameters.name = value.text(name, "the name of a parameter set", false);
     };
-    return {key, [&rule, fields, read_name](const std::string& name, const StrategyValue& value) {
+    return {key, [&rule, fields, read_name](const std::string& name, const TableValue& value) {
                 read_table(name, value, rule, fields, {{"parameters", read_name}});
             }};
 }
@@ -62,13 +61,13 @@ Inner hatch(HatchRule& rule) {
 }
 
 Inner skin(const char* key, SkinRule& rule) {
-    return {key, [&rule](const std::string& name, const StrategyValue& value) {
+    return {key, [&rule](const std::string& name, const TableValue& value) {
                 read_table(name, value, rule, skin_fields(), {hatch(rule.hatch)});
             }};
 }
 
 Inner support(SupportRule& rule) {
-    return {"support", [&rule](const std::string& name, const StrategyValue& value) {
+    return {"support", [&rule](const std::string& name, const TableValue& value) {
                 read_table(name, value, rule, std::span<const StrategyField<SupportRule>>(),
                            {contours(rule.contours), hatch(rule.hatch)});
             }};
@@ -97,8 +96,8 @@ ScanStrategy strategy_of(const StrategyValue& tables) {
     ScanStrategy strategy;
     Sets sets = preset_sets();
     std::vector<std::string> in_tables;
-    const auto read_sets = [&](const std::string& name, const StrategyValue& value) {
-        value.each(name, [&](const std::string& key, const StrategyValue& table) {
+    const auto read_sets = [&](const std::string& name, const TableValue& value) {
+        value.each(name, [&](const std::string& key, const TableValue& table) {
             ParameterSet& set = sets[key];
             set.name = key;
             in_tables.push_back(key);

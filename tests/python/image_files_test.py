@@ -26,13 +26,22 @@ IMAGES = [
     ("png-zip", {"pixel_mm": 0.5, "mirror": "y"}, ["--pixel-size", 0.5, "--mirror", "y"]),
     ("sl1", {"mirror": "none", "orientation": "landscape"}, ["--mirror", "none", "--orientation", "landscape"]),
     ("goo", {"printer": "mars 4 max"}, ["--printer", "mars 4 max"]),
+    ("goo", {"printer": "mars 4 max", "resin": {"exposure_s": 2, "travel": {"lift_mm": 7}, "exposure_ranges": {"0:9": 35}}},
+     ["--printer", "mars 4 max", "--resin", "resin.toml"]),
+    ("goo", {"printer": "mars 4 max", "resin": "resin.toml", "exposure_s": 9},
+     ["--printer", "mars 4 max", "--resin", "resin.toml", "--exposure", 9]),
     ("sl1s", {"exposure_s": 3, "first_exposure_s": 20.5, "fade_layers": 4},
      ["--exposure", 3, "--first-exposure", 20.5, "--fade-layers", 4]),
 ]  # fmt: skip
 
 
+RESIN = 'exposure_s = 2\n[travel]\nlift_mm = 7\n[exposure_ranges]\n"0:9" = 35\n'
+
+
 @pytest.mark.parametrize("name, keywords, options", IMAGES)
-def test_options_of_images_are_those_of_the_program(program, rook, tmp_path, name, keywords, options):
+def test_options_of_images_are_those_of_the_program(program, rook, tmp_path, monkeypatch, name, keywords, options):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "resin.toml").write_text(RESIN)
     (tmp_path / "program").mkdir()
     target = tmp_path / "program" / "rook.out"
     program.succeed("slice", rook, "-o", target, "--format", name, "--layer-height", 10, *options)
@@ -41,6 +50,29 @@ def test_options_of_images_are_those_of_the_program(program, rook, tmp_path, nam
     lamella.write(tmp_path / "rook.json", lamella.slice(rook, 10))
     lamella.convert(tmp_path / "rook.json", tmp_path / "converted.out", format=name, **keywords)
     assert (tmp_path / "converted.out").stat().st_size > 0
+
+
+@pytest.mark.parametrize(
+    "resin, text",
+    [
+        ({"exposre_s": 3}, "resin: there is no exposre_s; did you mean exposure_s?"),
+        ({"travel": {"lift": 3}}, "resin: travel: there is no lift; "),
+        ({"bottom_layers": 2.5}, "resin: bottom_layers: "),
+        ({"travel": 3}, "resin: travel: expected a table, found "),
+        ({"exposure_ranges": {"2:1": 3}}, "resin: exposure_ranges: there is 2:1, which ends where it begins or below; write the"),
+        ({"exposure_ranges": {"0:1": 3, "0.5:2": 3}}, "resin: exposure_ranges: there is 0.5:2, which overlaps "),
+        ({"density_g_ml": 0}, "resin: a density of 0 g/ml: choose a positive number"),
+        ("bad.toml", "bad.toml: there is no exposre_s; did you mean exposure_s?"),
+        (3, "resin: expected a TOML file, or a dict of its settings, found "),
+    ],
+)
+def test_settings_of_resin_that_are_wrong_say_where(tmp_path, monkeypatch, resin, text):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "bad.toml").write_text("exposre_s = 3")
+    layers = lamella.Stack([lamella.Layer([[(0, 0), (4, 0), (4, 4), (0, 4)]], 1, 0, 2)])
+    with pytest.raises((lamella.UsageError, TypeError)) as caught:
+        lamella.write(tmp_path / "x.goo", layers, printer="mars 4 max", resin=resin)
+    assert str(caught.value).startswith(text)
 
 
 def test_the_time_that_builds_agree_upon_is_that_of_a_job(program, rook, tmp_path, monkeypatch):

@@ -243,7 +243,7 @@ def test_strategies_come_from_files_and_dicts(tmp_path):
     "tables, text",
     [
         ({"hatch": {"distnace": 1}}, "strategy: hatch: there is no distnace; did you mean distance?"),
-        ({"hatch": {"parameters": ""}, "parameters": {"": {}}}, "strategy: hatch.parameters: expected the name of parameters, found an empty text"),
+        ({"hatch": {"parameters": ""}, "parameters": {"": {}}}, "strategy: hatch.parameters: expected the name of a parameter set, found an empty text"),
         ({"hatches": {}}, "strategy: there is no hatches; did you mean hatch?"),
         ({"hatch": {"distance": 0}}, "`hatch.distance` is 0, but has to be above 0"),
         ({"hatch": {"pattern": "zigzag"}}, 'hatch.pattern: "zigzag" is none of "lines", "meander", "stripes", "chessboard" and'),

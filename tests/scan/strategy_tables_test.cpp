@@ -6,6 +6,7 @@
 #include <map>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace lamella::strategy_tables_cases {
@@ -43,11 +44,18 @@ class PathValue : public StrategyValue {
     std::string choice(const std::string& name, const std::vector<std::string>& /*names*/) const override {
         return values_.at(name);
     }
-    std::string set_name(const std::string& name) const override { return values_.at(name); }
+    std::string text(const std::string& name, std::string_view /*expected*/,
+                     bool /*may_be_empty*/) const override {
+        return values_.at(name);
+    }
 
     [[noreturn]] void refuse_key(const std::string& name, const std::string& key,
                                  const std::vector<std::string>& known) const override {
         throw std::invalid_argument("no key: [" + name + "] " + key + ", first " + known.front());
+    }
+    [[noreturn]] void refuse_entry(const std::string& name, const std::string& key,
+                                   std::string_view /*reason*/) const override {
+        throw std::invalid_argument("refused: [" + name + "] " + key);
     }
     [[noreturn]] void refuse_set(const std::string& name, const std::string& set,
                                  const std::vector<std::string>& /*known*/) const override {

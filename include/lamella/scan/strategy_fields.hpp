@@ -3,11 +3,11 @@
 // Tables of all fields of a scan strategy. They define strategy files, statistics, the corresponding options
 // and Python's attributes.
 
+#include "lamella/core/table_value.hpp"
 #include "lamella/scan/strategy.hpp"
 
 #include <algorithm>
 #include <cstdint>
-#include <functional>
 #include <limits>
 #include <span>
 #include <string>
@@ -71,30 +71,9 @@ void for_each_set(Strategy& strategy, const Visit& visit) {
     visit("support.hatch", strategy.support.hatch.parameters);
 }
 
-/// A value from which a strategy or a field of it is read: in a TOML file, a dict of Python. `name` is its
-/// path, such as "upskin.hatch.distance", and "" for the whole. All functions throw an error in the words of
-/// the format, with the location, if the value is another one than they return.
-class StrategyValue {
+/// The tables of a strategy, whose parameter sets have names.
+class StrategyValue : public TableValue {
   public:
-    StrategyValue() = default;
-    StrategyValue(const StrategyValue&) = delete;
-    StrategyValue& operator=(const StrategyValue&) = delete;
-    virtual ~StrategyValue() = default;
-
-    using Visit = std::function<void(const std::string& key, const StrategyValue& value)>;
-    /// Calls `visit` for each value of a table.
-    virtual void each(const std::string& name, const Visit& visit) const = 0;
-    [[nodiscard]] virtual double number(const std::string& name) const = 0;
-    [[nodiscard]] virtual std::uint64_t count(const std::string& name, std::uint64_t most) const = 0;
-    [[nodiscard]] virtual bool flag(const std::string& name) const = 0;
-    [[nodiscard]] virtual std::string choice(const std::string& name,
-                                             const std::vector<std::string>& names) const = 0;
-    /// Returns the name of a parameter set, which is not empty.
-    [[nodiscard]] virtual std::string set_name(const std::string& name) const = 0;
-
-    /// Throws for a key that the table `name` cannot have.
-    [[noreturn]] virtual void refuse_key(const std::string& name, const std::string& key,
-                                         const std::vector<std::string>& known) const = 0;
     /// For the whole: throw for the name of a set that does not exist, and for a set that no rule names.
     [[noreturn]] virtual void refuse_set(const std::string& name, const std::string& set,
                                          const std::vector<std::string>& known) const = 0;
@@ -104,7 +83,7 @@ class StrategyValue {
 
 /// Reads a field of any type.
 template <class Value>
-void take(const StrategyValue& value, const std::string& name, Value& into) {
+void take(const TableValue& value, const std::string& name, Value& into) {
     if constexpr (std::is_enum_v<Value>) {
         const NamedValues<Value> known = named_values(Value{});
         const std::string chosen = value.choice(name, known.names());
