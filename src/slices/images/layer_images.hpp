@@ -57,9 +57,9 @@ class PlaneDrawing {
     bool mirror_rows_ = false;
 };
 
-/// Draws the number of the part, from 1 on, in which the centre of each pixel lies; 0 outside of all.
-/// Of several parts it is the one that covers most of the pixel, and the first among equals. At most 255
-/// parts.
+/// Draws the number of the part, from 1 on, in which the centre of each pixel lies; 0 outside of all. If it
+/// lies in several, the part that covers most of the pixel counts, and the first among equals. There may be
+/// 255 parts.
 RasterAreas draw_part_numbers(std::span<const Layer> parts, const PixelGrid& grid, const RowSink& sink);
 
 /// Makes images with the same grid and options. With a palette, pixels are numbers of parts. May be used by
