@@ -169,7 +169,7 @@ def stub(folder):
         "import numpy as np", "import numpy.typing as npt", "",
     ]  # fmt: skip
     local = words - set(typing.__all__) - set(vars(module))
-    for source in ("_arguments", "_pixels", "_methods"):
+    for source in ("_arguments", "_pixels", "_printing", "_methods"):
         names = vars(importlib.import_module(f"lamella.{source}"))
         found = sorted(word for word in local if word in names and word[0].isupper())
         if found:

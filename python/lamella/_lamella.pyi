@@ -9,7 +9,8 @@ import numpy.typing as npt
 
 from ._arguments import Corners, FillRule, Readable
 from ._pixels import Centre, PixelType, Voxels
-from ._methods import ContourDefect, Contours, PrintCheck, Window
+from ._printing import PrintCheck
+from ._methods import ContourDefect, Contours, Window
 
 __version__: str
 

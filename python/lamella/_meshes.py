@@ -235,7 +235,7 @@ def _arrays_of_vtk(name: str, thing: Any) -> Optional[Tuple[Any, Any]]:
     """Returns points and triangles of a vtkPolyData; None for anything else."""
     if not all(callable(_attribute(thing, method)) for method in ("GetPoints", "GetPolys", "GetNumberOfStrips")):
         return None
-    from vtkmodules.util.numpy_support import vtk_to_numpy
+    from vtkmodules.util.numpy_support import vtk_to_numpy  # type: ignore  # it has no types
 
     polygons = thing.GetPolys()
     corners = vtk_to_numpy(polygons.GetConnectivityArray())

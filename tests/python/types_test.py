@@ -85,7 +85,7 @@ strategy: lamella.ScanStrategy = lamella.ScanStrategy.from_toml("seed = 1")
 def test_the_samples_of_the_page_are_typed(tmp_path):
     program = tmp_path / "samples.py"
     program.write_text("\n".join(samples("docs/python.md")))
-    code, text = mypy(tmp_path, str(program))
+    code, text = mypy(tmp_path, "--ignore-missing-imports", str(program))  # of packages that samples use
     assert code == 0, text
 
 
