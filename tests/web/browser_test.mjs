@@ -78,7 +78,7 @@ test('a dropped file is sliced into the bytes of the program', async () => {
   await sliced(page);
   await page.locator('#format').selectOption('cli');
   const coming = page.waitForEvent('download');
-  await page.getByRole('button', { name: 'Download' }).click();
+  await page.getByRole('button', { name: 'Save' }).click();
   const download = await coming;
   assert.equal(download.suggestedFilename(), 'torus.cli');
   assert.ok(Buffer.compare(readFileSync(await download.path()), readFileSync(join(folder, 'torus.cli'))) === 0);
@@ -208,7 +208,7 @@ test('several files make a plate, and overlapping boxes are reported', async () 
   assert.match(await page.locator('#warnings').textContent(), /boxes of one and two overlap/);
   const coming = page.waitForEvent('download');
   await page.locator('#format').selectOption('cli');
-  await page.getByRole('button', { name: 'Download' }).click();
+  await page.getByRole('button', { name: 'Save' }).click();
   assert.ok(Buffer.compare(readFileSync(await (await coming).path()), readFileSync(join(folder, 'plate.cli'))) === 0);
   assert.deepEqual(complaints, []);
   await close();
@@ -354,7 +354,7 @@ test('messages use the words of the page, and a pattern needs no order of clicks
   await page.locator('#format option[value=ilt]').waitFor({ state: 'attached' });
   assert.equal(await page.locator('#warnings').textContent(), '');
   await page.locator('#format').selectOption('svg');
-  await page.getByRole('button', { name: 'Download' }).click();
+  await page.getByRole('button', { name: 'Save' }).click();
   await page.locator('#warnings li').first().waitFor();
   const warnings = await page.locator('#warnings').textContent();
   assert.match(warnings, /^box.svg: /);
@@ -417,7 +417,7 @@ test('the command that the page shows writes what the page downloads', async () 
     await sliced(page);
     await page.locator('#format').selectOption(format);
     const coming = page.waitForEvent('download');
-    await page.getByRole('button', { name: 'Download' }).click();
+    await page.getByRole('button', { name: 'Save' }).click();
     const bytes = readFileSync(await (await coming).path());
     const commands = (await page.locator('#command').textContent()).split('\n');
     assert.equal(commands.length, 2);
@@ -500,6 +500,44 @@ test('everything is reached with the keyboard, and a phone shows it in its width
     reached.add(await page.evaluate(() => document.activeElement.id || document.activeElement.name || document.activeElement.localName));
   }
   for (const id of ['file', 'body', 'layerHeight', 'slice', 'format', 'download', 'summary']) assert.ok(reached.has(id), id);
+  await close();
+});
+
+/** Chooses a printer by a word, as somebody types it. */
+async function choosePrinter(page, word) {
+  await page.getByText('Resin printer', { exact: true }).click();
+  await page.locator('#printers option').first().waitFor({ state: 'attached' });
+  await page.locator('[name=printer]').fill(word);
+  await page.locator('[name=printer]').press('Tab');
+}
+
+test('jobs for resin printers have the bytes of the program, and the check marks the print', async () => {
+  native('make', 'rook', '-o', 'rook.stl');
+  const { page, complaints, close } = await open('#layerHeight=2');
+  await page.locator('#file').setInputFiles(join(folder, 'rook.stl'));
+  await sliced(page);
+  await choosePrinter(page, 'mars');
+  assert.match(await page.locator('#printerFacts').textContent(), /^\d+ printers: /);
+  for (const [word, printer, extension] of [['Mars 4 Max', 'Elegoo Mars 4 Max', 'goo'], ['Photon M3 Max', 'Anycubic Photon M3 Max', 'pm3m']]) {
+    await page.locator('[name=printer]').fill(word);
+    assert.match(await page.locator('#printerFacts').textContent(), new RegExp(`^${printer}: .* files \\.${extension}$`));
+    const coming = page.waitForEvent('download');
+    await page.getByRole('button', { name: 'Save' }).click();
+    const download = await coming;
+    assert.equal(download.suggestedFilename(), `rook.${extension}`);
+    native('slice', 'rook.stl', '-o', `rook.${extension}`, '--layer-height', '2', '--printer', printer);
+    assert.ok(Buffer.compare(readFileSync(await download.path()), readFileSync(join(folder, `rook.${extension}`))) === 0, printer);
+    assert.match(await page.locator('#command').textContent(), new RegExp(`--printer=.*${word}`));
+  }
+  assert.ok(await page.locator('#printCheck').isHidden());
+  await page.locator('[name=check]').check();
+  await page.locator('#printCheck').waitFor();
+  native('slice', 'rook.stl', '-o', 'rook.cli', '--layer-height', '2', '--check', '--stats', 'rook.json');
+  const { findings } = JSON.parse(readFileSync(join(folder, 'rook.json'), 'utf8')).check;
+  assert.deepEqual(await page.locator('#checkFindings li').allTextContents(), findings);
+  await sliced(page);
+  if (process.env.LAMELLA_SHOT) await page.screenshot({ path: process.env.LAMELLA_SHOT });
+  assert.deepEqual(complaints, []);
   await close();
 });
 

@@ -2,7 +2,7 @@
 
 import { LamellaError, run, usePlatform } from '../package/api.js';
 import { previewOn } from './preview.js';
-import { check, enter, entered, goTo, labelOf, onlyImages, onlySteps, options as optionsWith, withoutImages, words } from './settings.js';
+import { check, enter, entered, goTo, labelOf, onlyImages, onlySteps, options as optionsWith, withoutCheck, withoutImages, words } from './settings.js';
 import { commandText, inWordsOfPage, warningsOfPage } from './texts.js';
 import { ViewerFrame } from './viewer_frame.js';
 
@@ -40,7 +40,9 @@ const patience = 300; // ms without a picture, after which layers are shown one 
 const meshFormats = { cli: 'cli', 'cli-ascii': 'cli', svg: 'svg', slc: 'slc', '3mf': '3mf', dxf: 'dxf', geojson: 'geojson', json: 'json', npz: 'npz', 'png-zip': 'zip', sl1: 'sl1', sl1s: 'sl1s', html: 'html' };
 const scanFormats = { ilt: 'ilt', ovf: 'ovf', '3mf-toolpath': '3mf', cli: 'cli', svg: 'svg', dxf: 'dxf', json: 'json', npz: 'npz', html: 'html' };
 
-const imageFormats = ['png-zip', 'sl1', 'sl1s'];
+/** The name of the format that the chosen printer reads, in the list of formats. */
+const ofPrinter = 'of the printer';
+const imageFormats = [ofPrinter, 'png-zip', 'sl1', 'sl1s'];
 /** Whose bytes come one after the other and do not depend on the name. */
 const streamedFormats = ['cli', 'cli-ascii', 'svg', 'slc', 'dxf', 'geojson', 'json'];
 const blobBytes = 64 << 20; // of chunks that become one
@@ -182,10 +184,57 @@ const seconds = (value) => `${value < 10 ? value.toFixed(2) : value.toFixed(1)} 
 const grouped = (value) => value.toLocaleString('en');
 
 function fillFormats() {
-  const of = options().scan ? scanFormats : meshFormats;
+  const printer = options().scan ? undefined : printerNamed(form.elements.printer.value);
+  const of = { ...(printer ? { [ofPrinter]: printer.extension.slice(1) } : {}), ...(options().scan ? scanFormats : meshFormats) };
   const before = $('format').value;
-  $('format').replaceChildren(...Object.keys(of).map((name) => new Option(name, name)));
+  $('format').replaceChildren(...Object.keys(of).map((name) => new Option(name === ofPrinter ? `${printer.extension} for ${printer.name}` : name, name)));
   if (of[before]) $('format').value = before;
+}
+
+// ---- Resin printers ---------------------------------------------------------------------------------------------------
+
+let printers = []; // {name, extension, facts}
+
+/** Lists the printers that the program knows. */
+async function listPrinters() {
+  const { text } = await run(['printers']);
+  printers = text.split('\n').flatMap((line) => {
+    const found = /^(.+?) {2,}(\.\w+) +(.*)$/.exec(line);
+    return found ? [{ name: found[1], extension: found[2], facts: found[3].replace(/ {2,}/, ' pixels, ').replaceAll(' x ', ' × ') }] : [];
+  });
+  $('printers').replaceChildren(...printers.map(({ name, facts }) => Object.assign(new Option(name, name), { label: facts })));
+  showPrinter();
+}
+
+/** The printer of this name, or the only one that has the word in its name, as the program finds it. */
+function printerNamed(word) {
+  const wanted = word.trim().toLowerCase();
+  const having = wanted ? printers.filter(({ name }) => name.toLowerCase().includes(wanted)) : [];
+  return having.find(({ name }) => name.toLowerCase() === wanted) ?? (having.length === 1 ? having[0] : undefined);
+}
+
+/** Says which printer is chosen, or how many have the word in their names. */
+function showPrinter() {
+  const word = form.elements.printer.value.trim();
+  const found = printerNamed(word);
+  const having = printers.filter(({ name }) => name.toLowerCase().includes(word.toLowerCase()));
+  const several = having.length > 1 ? `${having.length} printers: ${having.slice(0, 4).map(({ name }) => name).join(', ')}${having.length > 4 ? ' …' : ''}` : 'No printer has this word in its name.';
+  if (word && printers.length > 0) $('printerFacts').textContent = found ? `${found.name}: ${found.facts}; files ${found.extension}` : several;
+  else $('printerFacts').textContent = 'Type a word, such as a maker, to search. The printer determines format and display.';
+  const before = $('format').value;
+  fillFormats();
+  if (found && before !== ofPrinter) $('format').value = ofPrinter;
+}
+
+/** Shows what the check of the print found; the page of the layers marks it. */
+function showPrintCheck(found) {
+  $('printCheck').hidden = !found;
+  if (!found) return;
+  const { findings } = found;
+  $('printCheck').classList.toggle('ok', findings.length === 0);
+  $('checkVerdict').textContent = findings.length === 0 ? 'The check of the print found nothing.' : 'The check of the print found:';
+  $('checkFindings').replaceChildren(...findings.map((text) => named('li', text)));
+  $('checkMarks').hidden = found.list_of_islands.length + found.list_of_cavities.length === 0;
 }
 
 const nameOf = ({ files }) => Object.keys(files).join(', ');
@@ -205,12 +254,15 @@ const writing = ({ files, mesh }, given, ...more) => {
 /** Name of a download, and the command that writes it to a path. */
 function writingDownload(path) {
   const format = $('format').value;
-  const given = { ...withoutImages(options()), ...(imageFormats.includes(format) ? onlyImages(options()) : {}) };
-  const images = input.mesh ? [] : words(onlyImages(given));
+  const printer = format === ofPrinter ? printerNamed(form.elements.printer.value) : undefined;
+  const { printer: _, ...ofImages } = onlyImages(options());
+  const images = printer ? { ...ofImages, printer: printer.name } : ofImages;
+  const given = { ...withoutCheck(withoutImages(options())), ...(imageFormats.includes(format) ? images : {}) };
+  const ofLayers = input.mesh ? [] : words(onlyImages(given));
   const [first] = Object.keys(input.files);
-  const name = `${first.replace(/\.[^.]*$/, '')}.${{ ...meshFormats, ...scanFormats }[format]}`;
+  const name = `${first.replace(/\.[^.]*$/, '')}.${printer ? printer.extension.slice(1) : { ...meshFormats, ...scanFormats }[format]}`;
   const output = path(name);
-  return { name, output, command: writing(input, given, ...images, ...(input.mesh ? ['-o', output] : [output]), '--format', format) };
+  return { name, output, command: writing(input, given, ...ofLayers, ...(input.mesh ? ['-o', output] : [output]), ...(printer ? [] : ['--format', format])) };
 }
 
 /** Shows the command that does the same in a terminal. */
@@ -267,6 +319,7 @@ function showFigures(shown, result, times) {
     const figures = JSON.parse(new TextDecoder().decode(result.files['figures.json']));
     describe(shown, figures);
     warnings.push(...overlaps(shown, figures.parts));
+    showPrintCheck(figures.check);
     rows.push(['layers', grouped(figures.layers.length)], ['contours', grouped(figures.contours)], ['points', grouped(figures.points)]);
     for (const stage of ['read', 'weld', 'link', 'slice', 'write']) if (figures.seconds[stage] > 0) rows.push([deeds[stage].toLowerCase(), seconds(figures.seconds[stage])]);
   }
@@ -333,7 +386,7 @@ async function take(load) {
     $('status').textContent = 'Reading …';
     showWarnings([]);
     showTimes([]);
-    $('results').hidden = true;
+    $('results').hidden = $('printCheck').hidden = true;
     $('slice').disabled = true;
     $('input').textContent = '';
     input = null;
@@ -468,10 +521,11 @@ form.addEventListener('submit', (event) => {
   const [first] = sliceIfValid();
   if (first) goTo(first.field);
 });
-const isOfImages = (name) => /^(pixel|display|antialias)/.test(name);
+const isOfImages = (name) => /^(pixel|display|antialias|printer)/.test(name);
 form.addEventListener('change', ({ target }) => {
   if (!target.name) return;
   keepSettings();
+  if (target.name === 'printer') showPrinter();
   if (isOfImages(target.name)) return void (check(), tellCommand()); // the layers stay as they are
   sliceIfValid();
 });
@@ -505,6 +559,8 @@ for (const kind of ['dragover', 'dragleave', 'drop'])
     document.body.classList.toggle('over', kind === 'dragover');
     if (kind === 'drop' && event.dataTransfer.files.length > 0) takeFiles([...event.dataTransfer.files]);
   });
+form.elements.printer.addEventListener('input', showPrinter);
+$('resin').addEventListener('toggle', () => printers.length === 0 && listPrinters().catch(() => {}), { once: true });
 addEventListener('hashchange', () => {
   const body = takeSettings();
   const other = body !== $('body').value && body !== '';

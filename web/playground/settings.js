@@ -4,8 +4,8 @@ const $ = (id) => document.getElementById(id);
 const form = $('settings');
 
 /** Options of images alone, and those of which layers of a file take notice. */
-const imageNames = ['pixelSize', 'resolution', 'displaySize', 'antialias'];
-const stepNames = ['fill', 'offset', 'minArea'];
+const imageNames = ['pixelSize', 'resolution', 'displaySize', 'antialias', 'printer'];
+const stepNames = ['fill', 'offset', 'bottomOffset', 'minArea'];
 const kebab = (name) => name.replace(/[A-Z]/g, (letter) => `-${letter.toLowerCase()}`);
 
 export const fields = () => [...form.elements].filter((field) => field.name);
@@ -29,13 +29,14 @@ const pair = (values, first, second, by) => (values[first] || values[second] ? `
 
 /** The options of the program, by their names in camel case. `strategy` is a file's name, if one was opened. */
 export function options(strategy) {
-  const { zFrom, zTo, adaptiveMin, adaptiveMax, pixelsX, pixelsY, displayX, displayY, ...values } = entered();
+  const { zFrom, zTo, adaptiveMin, adaptiveMax, pixelsX, pixelsY, displayX, displayY, bottomInset, bottomHeight, ...values } = entered();
   const all = {
     ...values,
     zRange: pair({ zFrom, zTo }, 'zFrom', 'zTo', ':'),
     adaptive: pair({ adaptiveMin, adaptiveMax }, 'adaptiveMin', 'adaptiveMax', ':'),
     resolution: pair({ pixelsX, pixelsY }, 'pixelsX', 'pixelsY', 'x'),
     displaySize: pair({ displayX, displayY }, 'displayX', 'displayY', ','),
+    bottomOffset: pair({ bottomInset, bottomHeight }, 'bottomInset', 'bottomHeight', ':'),
     strategy,
   };
   const without = [...(all.adaptive ? ['layerHeight', 'firstLayerHeight'] : ['cusp']), ...(all.scan ? [] : vectorNames())];
@@ -46,6 +47,7 @@ const vectorNames = () => [...$('vectors').elements].map(({ name }) => name).con
 const only = (given, takes) => Object.fromEntries(Object.entries(given).filter(([name]) => takes(name)));
 
 export const withoutImages = (given) => only(given, (name) => !imageNames.includes(name));
+export const withoutCheck = (given) => only(given, (name) => name !== 'check');
 export const onlySteps = (given) => only(given, (name) => stepNames.includes(name));
 export const onlyImages = (given) => only(given, (name) => imageNames.includes(name));
 
@@ -56,7 +58,7 @@ export const words = (given) =>
 // ---- What is invalid ----------------------------------------------------------------------------------------------------
 
 /** Fields that go together: one alone means nothing. */
-const couples = [['adaptiveMin', 'adaptiveMax'], ['pixelsX', 'pixelsY'], ['displayX', 'displayY']];
+const couples = [['bottomInset', 'bottomHeight'], ['adaptiveMin', 'adaptiveMax'], ['pixelsX', 'pixelsY'], ['displayX', 'displayY']];
 /** The first must not be larger than the second. */
 const orders = [['adaptiveMin', 'adaptiveMax'], ['zFrom', 'zTo']];
 

@@ -4,7 +4,7 @@ import { fields, labelOf } from './settings.js';
 
 const camel = (name) => name.replace(/-[a-z]/g, (letters) => letters[1].toUpperCase());
 /** Options that are several fields. */
-const ofSeveral = { zRange: 'zFrom', adaptive: 'adaptiveMin', resolution: 'pixelsX', displaySize: 'displayX' };
+const ofSeveral = { zRange: 'zFrom', adaptive: 'adaptiveMin', resolution: 'pixelsX', displaySize: 'displayX', bottomOffset: 'bottomInset' };
 
 /** “Layer height” for `--layer-height`; other options stay as they are. */
 function fieldOf(option, kebabName) {
