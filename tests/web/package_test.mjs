@@ -12,7 +12,7 @@ process.env.SOURCE_DATE_EPOCH = '0';
 const program = process.env.LAMELLA_PROGRAM;
 const packageFolder = process.env.LAMELLA_PACKAGE;
 const lamella = await import(pathToFileURL(join(packageFolder, 'node.js')).href);
-const { LamellaError, Mesh, Stack, checkPrint, diagnose, makeBody, meshOf, readFile, readLayers, readMesh, run, slice, sliceLayers, sliceToFile, view, writeLayers } = lamella;
+const { LamellaError, Mesh, Stack, checkPrint, diagnose, makeBody, meshOf, pixels, readFile, readLayers, readMesh, run, slice, sliceLayers, sliceToFile, view, writeLayers } = lamella;
 
 const folder = mkdtempSync(join(tmpdir(), 'lamella-web-'));
 after(() => rmSync(folder, { recursive: true, force: true }));
@@ -519,9 +519,34 @@ test('a print is checked as the program checks it, from a mesh and from its laye
   assert.equal((await checkPrint(await slice(mesh, { layerHeight: 0.2 }), { overhangAngle: 80 })).ok, true);
 });
 
+test('pixels are those of the images, where the layers are', async () => {
+  const mesh = await meshOf(
+    [[1, 2, 0], [4, 2, 0], [4, 3, 0], [1, 3, 0], [1, 2, 2], [4, 2, 2], [4, 3, 2], [1, 3, 2]].flat(),
+    [[0, 2, 1], [0, 3, 2], [4, 5, 6], [4, 6, 7], [0, 1, 5], [0, 5, 4], [1, 2, 6], [1, 6, 5], [2, 3, 7], [2, 7, 6], [3, 0, 4], [3, 4, 7]].flat(),
+  );
+  const box = await pixels(await slice(mesh, { layerHeight: 1 }), { pixelSize: [0.5, 0.4] });
+  assert.deepEqual(box.shape, [2, 3, 6]);
+  assert.deepEqual([...box.z], [0.5, 1.5]);
+  assert.deepEqual(box.spacing, [0.5, 0.4]);
+  const near = (value, expected) => assert.ok(Math.abs(value - expected) < 1e-9, `${value}`);
+  near(box.origin[0], 1.25);
+  near(box.origin[1], 2.1); // the images are 1.2 mm high around the middle of the box
+  assert.deepEqual([...box.data], [...Array(6).fill(191), ...Array(6).fill(255), ...Array(6).fill(191), ...Array(6).fill(191), ...Array(6).fill(255), ...Array(6).fill(191)]);
+  const stack = await slice(await makeBody('rook'), { layerHeight: 2 });
+  for (const antialias of [1, 8]) {
+    const { data, shape, spacing } = await pixels(stack, { pixelSize: 0.1, antialias });
+    const size = shape[1] * shape[2];
+    stack.layers.forEach(({ areaMm2 }, i) => {
+      const covered = data.subarray(i * size, (i + 1) * size).reduce((sum, value) => sum + value / 255, 0) * spacing[0] * spacing[1];
+      assert.ok(Math.abs(covered - areaMm2) < (antialias === 1 ? 0.02 : 0.001) * areaMm2, `${covered} instead of ${areaMm2}`);
+    });
+  }
+  await assert.rejects(pixels(stack, { mirror: 'x' }), /mirror is for images/);
+});
+
 test('only what is documented is exported', () => {
   assert.deepEqual(Object.keys(lamella).sort(), [
-    'LamellaError', 'Layer', 'Mesh', 'Stack', 'checkPrint', 'diagnose', 'makeBody', 'meshOf', 'readFile', 'readLayers', 'readMesh', 'releaseWorkers', 'run', 'slice',
+    'LamellaError', 'Layer', 'Mesh', 'Stack', 'checkPrint', 'diagnose', 'makeBody', 'meshOf', 'pixels', 'readFile', 'readLayers', 'readMesh', 'releaseWorkers', 'run', 'slice',
     'sliceLayers', 'sliceToFile', 'usePlatform', 'view', 'writeLayers',
   ]);
   assert.ok(Mesh);

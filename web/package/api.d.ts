@@ -307,6 +307,24 @@ export interface PrintRegion {
   largest_mm2: number;
   volume_mm3: number;
 }
+/** Layers as pixels. */
+export interface Pixels {
+  /** Layer by layer, each row by row in ascending y, each row in ascending x: 255 times the covered part of a pixel. */
+  data: Uint8Array;
+  shape: [layers: number, rows: number, columns: number];
+  /** Size of a pixel along x and y, mm. */
+  spacing: [x: number, y: number];
+  /** Centre of the first pixel, mm. */
+  origin: [x: number, y: number];
+  /** Height of the cut of each layer, mm. */
+  z: Float64Array;
+}
+/** Draws the layers. By default pixels are 0.05 mm wide, and the images are as large as the part. */
+export function pixels(
+  stack: Stack,
+  options?: CallOptions & Pick<WriteOptions, 'pixelSize' | 'resolution' | 'displaySize' | 'antialias' | 'gamma' | 'greyCurve'>,
+): Promise<Pixels>;
+
 /** What `lamella check --json` prints. */
 export interface PrintCheck {
   ok: boolean;

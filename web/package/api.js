@@ -2,6 +2,7 @@
 // program on them in a worker. So nothing has to be freed, and a call can be ended at any time.
 
 import { newFlow } from './flow.js';
+import { pixelsOf } from './pixels.js';
 import { rawReader } from './raw_layers.js';
 
 const kinds = { 1: 'internal', 2: 'usage', 3: 'input', 4: 'defect', 5: 'limit', 6: 'output', 130: 'cancelled' };
@@ -648,6 +649,17 @@ export async function readLayers(data, name = 'layers', options = {}) {
   const plain = fileName(name, { 'stack.npz': 1 });
   const { files, warnings } = await run(['convert', plain, 'stack.npz', '--progress=json', ...wordsOf(options, {})], { [plain]: bytesOf(data) }, options);
   return new Stack(files['stack.npz'], { warnings });
+}
+
+/**
+ * The layers as pixels: exact coverage from 0 to 255 or, with `antialias: 1`, 255 where the centre of a pixel is covered.
+ * @returns {Promise<{data: Uint8Array, shape: number[], spacing: number[], origin: number[], z: Float64Array}>}
+ */
+export async function pixels(stack, options = {}) {
+  checked(stack, [Stack], 'pixels');
+  for (const name of ['printer', 'orientation', 'mirror', 'partColours'])
+    if (options[name] !== undefined) throw new TypeError(`pixels: ${name} is for images, and columns and rows of pixels are along x and y`);
+  return pixelsOf(await writeLayers(stack, 'png', options), roomFor);
 }
 
 /** A page that shows a mesh's or a file's layers, as `lamella view` writes it. @returns {Promise<Uint8Array>} HTML */
