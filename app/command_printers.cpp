@@ -4,7 +4,9 @@
 
 #include "command_line.hpp"
 #include "commands.hpp"
+#include "failure.hpp"
 #include "messages.hpp"
+#include "options.hpp"
 #include "text_file.hpp"
 
 #include <fmt/format.h>
@@ -29,13 +31,20 @@ bool has_word(std::string_view name, std::string_view word) {
            word.empty();
 }
 
-int run_printers(std::string_view word) {
-    std::vector<ResinPrinter> printers(resin_printers().begin(), resin_printers().end());
-    std::erase_if(printers, [&](const ResinPrinter& printer) { return !has_word(printer.name, word); });
-    if (printers.empty())
-        throw Error(
-            ErrorKind::usage,
-            fmt::format("no printer has '{}' in its name; lamella printers lists all", excerpt(word)));
+Json printers_json(const std::vector<ResinPrinter>& printers) {
+    Json list = Json::array();
+    for (const ResinPrinter& printer : printers)
+        list.push_back({{"name", printer.name},
+                        {"format", printer.format},
+                        {"extension", printer.extension},
+                        {"pixels", {printer.pixels.x, printer.pixels.y}},
+                        {"display_mm", {printer.display_mm.x, printer.display_mm.y}},
+                        {"height_mm", printer.height_mm},
+                        {"grey", printer.grey}});
+    return list;
+}
+
+std::string printers_text(const std::vector<ResinPrinter>& printers) {
     std::size_t widest = 0;
     for (const ResinPrinter& printer : printers)
         widest = std::max(widest, printer.name.size());
@@ -44,14 +53,28 @@ int run_printers(std::string_view word) {
         text += fmt::format("{:<{}}  {:<8}  {:>5} x {:<5}  {:.6g} x {:.6g} x {:.6g} mm\n", printer.name,
                             widest, printer.extension, printer.pixels.x, printer.pixels.y,
                             printer.display_mm.x, printer.display_mm.y, printer.height_mm);
-    print(text);
+    return text;
+}
+
+int run_printers(std::string_view word, bool json) {
+    std::vector<ResinPrinter> printers(resin_printers().begin(), resin_printers().end());
+    std::erase_if(printers, [&](const ResinPrinter& printer) { return !has_word(printer.name, word); });
+    if (printers.empty())
+        throw Error(
+            ErrorKind::usage,
+            fmt::format("no printer has '{}' in its name; lamella printers lists all", excerpt(word)));
+    print(json ? json_text(printers_json(printers)) : printers_text(printers));
     return 0;
 }
 
 } // namespace
 
 Command printers_command() {
-    const auto word = std::make_shared<std::string>();
+    struct Arguments {
+        std::string word;
+        bool json = false;
+    };
+    const auto arguments = std::make_shared<Arguments>();
     return {
         .name = "printers",
         .summary = "list resin printers",
@@ -62,14 +85,15 @@ Command printers_command() {
                       .help = "lists only printers with this word, or part of one, in their names",
                       .required = false,
                       .set =
-                          [word](const std::string& text) {
-                              *word = text;
+                          [arguments](const std::string& text) {
+                              arguments->word = text;
                           }}},
-        .groups = {common_options(false)},
+        .groups = {{"output", "Output", {flag("json", "print JSON", arguments->json)}},
+                   common_options(false)},
         .examples = {{"lamella printers elegoo", "the printers of Elegoo"},
                      {"lamella slice part.stl -o part.goo --printer \"Mars 4\"", "a job for one of them"}},
-        .run = [word](const Context& /*context*/) {
-            return run_printers(*word);
+        .run = [arguments](const Context& /*context*/) {
+            return run_printers(arguments->word, arguments->json);
         }};
 }
 

@@ -122,6 +122,9 @@ class ResinSettings(ProgramTest):
         names = [line.split("  ")[0] for line in self.succeed("printers", "SATURN").text.splitlines()]
         self.assertGreater(len(names), 1)
         self.assertEqual(names, [name for name in (line.split("  ")[0] for line in everything) if "saturn" in name.lower()])
+        found = self.succeed("printers", "saturn", "--json").json()
+        self.assertEqual([printer["name"] for printer in found], [name.strip() for name in names])
+        self.assertEqual({printer["extension"] for printer in found} & {".goo", ".ctb"}, {printer["extension"] for printer in found})
         self.fail_with(2, "no printer has 'xyz' in its name", "printers", "xyz")
 
     def test_a_batch_writes_files_of_the_printer(self):

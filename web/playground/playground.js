@@ -193,15 +193,13 @@ function fillFormats() {
 
 // ---- Resin printers ---------------------------------------------------------------------------------------------------
 
-let printers = []; // {name, extension, facts}
+let printers = []; // {name, extension, pixels, display_mm, height_mm, facts}
 
 /** Lists the printers that the program knows. */
 async function listPrinters() {
-  const { text } = await run(['printers']);
-  printers = text.split('\n').flatMap((line) => {
-    const found = /^(.+?) {2,}(\.\w+) +(.*)$/.exec(line);
-    return found ? [{ name: found[1], extension: found[2], facts: found[3].replace(/ {2,}/, ' pixels, ').replaceAll(' x ', ' × ') }] : [];
-  });
+  const { text } = await run(['printers', '--json']);
+  const factsOf = ({ pixels, display_mm, height_mm }) => `${pixels.join(' × ')} pixels, ${[...display_mm, height_mm].join(' × ')} mm`;
+  printers = JSON.parse(text).map((printer) => ({ ...printer, facts: factsOf(printer) }));
   $('printers').replaceChildren(...printers.map(({ name, facts }) => Object.assign(new Option(name, name), { label: facts })));
   showPrinter();
 }
