@@ -78,7 +78,8 @@ PrintCheck check_mesh(const CheckArguments& arguments, MeshFile mesh, Messages& 
 void write_report(const CheckArguments& arguments, const LayerFile& file, const PrintCheck& check,
                   Messages& messages, const Execution& execution) {
     const auto page = open_layer_page(arguments.report, info_of(file), page_options(arguments.input));
-    write_planes(*page, file, true, false, messages, execution, arguments.max_memory());
+    write_planes(*page, file, !arguments.making.steps().any(), false, messages, execution,
+                 arguments.max_memory());
     PageNotes notes = file_notes(file);
     notes.sections.push_back(print_check_section(check));
     notes.locations = places_of(check);
@@ -88,8 +89,10 @@ void write_report(const CheckArguments& arguments, const LayerFile& file, const 
 }
 
 /// Checks the layers of a slice file.
-PrintCheck check_layers(const CheckArguments& arguments, const LayerFile& file, Messages& messages,
+PrintCheck check_layers(const CheckArguments& arguments, LayerFile file, Messages& messages,
                         const Execution& execution) {
+    if (arguments.placement.given() || arguments.layering.given())
+        refuse_options_of_meshes(file);
     for (const PartInfo& part : file.parts)
         if (part.exposure)
             throw Error(ErrorKind::input,
@@ -97,6 +100,8 @@ PrintCheck check_layers(const CheckArguments& arguments, const LayerFile& file, 
                                     "or the layers that the vectors are made of",
                                     file.path, one_line(part.label)));
     warn_about(file, file.warnings, false, messages);
+    if (const LayerSteps steps = arguments.making.steps(); steps.any())
+        take_steps(steps, file, false, messages, execution, arguments.max_memory());
     PrintCheck check = check_print(file, arguments.checking.options(arguments.max_memory()), execution);
     if (!arguments.report.empty())
         write_report(arguments, file, check, messages, execution);
@@ -122,10 +127,11 @@ int run_check(const CheckArguments& arguments, const Context& context) {
     MeshReadOptions reading = arguments.limits.of_meshes();
     reading.kept = KeptPlanes::if_faster;
     auto read = read_any(arguments.input, reading, execution);
-    const auto* const file = std::get_if<LayerFile>(&read);
-    const PrintCheck check = file != nullptr ? check_layers(arguments, *file, context.messages, execution)
-                                             : check_mesh(arguments, std::move(std::get<MeshFile>(read)),
-                                                          context.messages, execution);
+    auto* const file = std::get_if<LayerFile>(&read);
+    const PrintCheck check =
+        file != nullptr
+            ? check_layers(arguments, std::move(*file), context.messages, execution)
+            : check_mesh(arguments, std::move(std::get<MeshFile>(read)), context.messages, execution);
     const bool ok = check.findings.first(Severity::warning) == nullptr;
     if (!arguments.stats.empty()) {
         const std::string text = json_text(check_stats(context.command, arguments, check));
@@ -141,7 +147,7 @@ int run_check(const CheckArguments& arguments, const Context& context) {
     } else if (arguments.stats != "-" && arguments.report != "-") {
         context.messages.result(fmt::format(
             "{}: {}, {}\n{}", one_line(input_name(arguments.input)), counted(check.layers.size(), "layer"),
-            ok ? "nothing found" : "not sound to print", print_check_text(check)));
+            ok ? "sound to print" : "not sound to print", print_check_text(check)));
     }
     if (arguments.strict && !ok)
         throw Error(ErrorKind::defect, fmt::format("{}: the check failed", input_name(arguments.input)));
@@ -153,26 +159,29 @@ int run_check(const CheckArguments& arguments, const Context& context) {
 Command check_command() {
     const auto arguments = std::make_shared<CheckArguments>();
     OptionGroup checking{"checks", "Checks", print_check_options(arguments->checking)};
+    checking.options.push_back(
+        output_file("stats", "write the findings and the areas of every layer as JSON; - is standard output",
+                    arguments->stats));
     checking.options.push_back(output_file(
-        "stats", "write the areas of every layer as JSON, too; - is standard output", arguments->stats));
-    checking.options.push_back(
-        output_file("report", "write a page that shows the layers, with a mark at everything that was found",
-                    arguments->report, page_extensions()));
-    checking.options.push_back(
-        flag("strict",
-             "end with exit code 4 if there is an island, a cup, a trap, an empty layer or an open contour",
-             arguments->strict));
+        "report",
+        "write a page that shows the layers, with a mark at each of the first 500 regions of each kind",
+        arguments->report, page_extensions()));
+    checking.options.push_back(flag("strict",
+                                    "end with exit code 4 if there is an island, a loose support, a cup, a "
+                                    "trap, an empty layer or an open contour",
+                                    arguments->strict));
     checking.options.push_back(flag("json", "print JSON", arguments->json));
     return {
         .name = "check",
         .summary = "find islands, overhangs and enclosed resin in a print",
         .description =
             "Checks whether layers can be printed one on the other, as a resin printer does it. Islands are "
-            "material that begins in the resin, without material of the layer below. Overhangs are wider "
-            "than the layer below carries. Cups are spaces that are closed by material, and by the film of "
-            "the vat, while they are printed: lifting the plate makes a vacuum in them. Traps never open, "
-            "and resin stays in them. The layers are those of a slice file or of a job for a resin printer, "
-            "or a mesh is cut. Contours are compared exactly, without pixels.",
+            "material that begins in the resin, without material in the layer below. Overhangs reach farther "
+            "beyond the layer below than a surface at --overhang-angle does. Cups are hollows that open "
+            "later, or that the plate closes: while they grow, the film of the vat closes them, and lifting "
+            "the plate makes a vacuum in them. Traps are hollows that never open, so resin stays in them. "
+            "FILE is a mesh, which is cut, a slice file, or a job for a resin printer. Contours are compared "
+            "exactly, without pixels.",
         .operands = {{.placeholder = "FILE",
                       .help = "a mesh or a slice file; - is standard input",
                       .set =

@@ -74,6 +74,8 @@ int run_convert(const ConvertArguments& arguments, const Context& context) {
     write_planes(*writer, file, !steps.any(), arguments.strict, context.messages, execution, max_memory);
     writer->finish();
     context.messages.warn_of(output_name(arguments.output), writer->warnings());
+    if (const auto warning = arguments.writing.image.other_printer(file, format))
+        context.messages.warn_of(output_name(arguments.output), {*warning});
 
     std::string text =
         fmt::format("{}: {} from {} ({}) as {}\n", one_line(output_name(arguments.output)),

@@ -17,7 +17,7 @@ Command resin_command() {
              "line. The option --resin of other commands reads such a file.",
          .file_help = "the file of settings; - is standard input",
          .missing = "the settings to check",
-         .confirmation = "are settings for resin",
+         .confirmation = "valid settings for resin",
          .examples = {{"lamella resin show > grey.toml", "the default settings, as a file to edit"},
                       {"lamella resin check grey.toml", "whether the file has settings"}},
          .text = [](const std::string& file) {

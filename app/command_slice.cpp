@@ -206,7 +206,8 @@ OptionGroup checking_options(SliceArguments& target) {
               "that no scan vector reaches, steps that leave nothing, findings of --check; write no file",
               target.strict),
          flag("check",
-              "find islands, overhangs and enclosed resin, as lamella check does, for --stats and --report",
+              "find islands, overhangs and enclosed resin, as lamella check does, for the summary, --stats "
+              "and --report",
               target.check)}};
     for (Option& option : print_check_options(target.checking)) {
         option.goes_with = "check";

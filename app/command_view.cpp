@@ -90,10 +90,7 @@ std::uint64_t view_layers(const ViewArguments& arguments, LayerFile file, const 
                           Messages& messages, const Execution& execution) {
     if (arguments.placement.given() || arguments.layer_height || !arguments.slice_at.empty() ||
         arguments.snap)
-        throw Error(ErrorKind::usage,
-                    fmt::format("{}: holds layers, and these stay where they are; options of "
-                                "where a part stands and how it is cut are for meshes",
-                                file.path));
+        refuse_options_of_meshes(file);
     warn_about(file, file.warnings, false, messages);
     PageNotes notes = file_notes(file);
     const LayerSteps steps = arguments.making.steps();

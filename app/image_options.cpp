@@ -14,6 +14,7 @@
 #include <charconv>
 #include <cstddef>
 #include <limits>
+#include <span>
 #include <string_view>
 
 namespace lamella::app {
@@ -175,8 +176,8 @@ OptionGroup image_options(ImageArguments& target) {
                   "exposure time of a layer (default: that of the printer, such as 2.5; sl1: 7.5; sl1s: 2)",
                   target.exposure_s),
          positive("first-exposure", "SECONDS",
-                  "exposure time of the first layers (default: that of the printer, such as 30; sl1: 35; "
-                  "sl1s: 25)",
+                  "exposure time of each of the first layers, whose number bottom_layers in --resin sets "
+                  "(default: that of the printer, such as 30; sl1: 35; sl1s: 25)",
                   target.first_exposure_s),
          std::move(fade)}};
 }
@@ -262,6 +263,21 @@ void ImageArguments::apply_to(const LayerFile& file, const LayerFormat& format, 
         options.image.raster.antialias = job.antialias;
     if (printer.empty() && info.grid)
         options.printer = printer_of(job, format);
+}
+
+std::optional<std::string> ImageArguments::other_printer(const LayerFile& file,
+                                                         const LayerFormat& format) const {
+    if (!file.resin || !format.exposure || !printer.empty())
+        return std::nullopt;
+    const std::span<const ResinPrinter> all = resin_printers();
+    const auto found = std::find_if(all.begin(), all.end(), [&](const ResinPrinter& one) {
+        return same_name(one.name, file.resin->printer) && one.format != format.name;
+    });
+    if (found == all.end() || printer_of(*file.resin, format) != nullptr)
+        return std::nullopt;
+    return fmt::format("the job is for the {}, which reads files of the format {} ({}), not {}; name another "
+                       "printer with --printer",
+                       found->name, found->format, found->extension, format.name);
 }
 
 } // namespace lamella::app

@@ -38,6 +38,9 @@ struct ImageArguments {
     /// the file. Nothing happens if it is no job for a resin printer.
     void apply_to(const LayerFile& file, const LayerFormat& format, LayerFileInfo& info,
                   LayerWriteOptions& options) const;
+    /// Returns a warning if the file is for a printer that does not read this format, and none is given.
+    [[nodiscard]] std::optional<std::string> other_printer(const LayerFile& file,
+                                                           const LayerFormat& format) const;
 
   private:
     /// Returns these settings, changed by the options.

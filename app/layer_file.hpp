@@ -29,6 +29,9 @@ struct StepChanges {
 StepChanges take_steps(const LayerSteps& steps, LayerFile& file, bool strict, Messages& messages,
                        const Execution& execution, std::uint64_t max_memory);
 
+/// Throws Error{usage} for options that concern meshes alone.
+[[noreturn]] void refuse_options_of_meshes(const LayerFile& file);
+
 /// Writes all layers of the file, which need not be in memory. If `search_rings`, warns like take_steps of
 /// rings that bound no material. `max_memory` is that of layer_doubts.
 void write_planes(LayerWriter& writer, const LayerFile& file, bool search_rings, bool strict,

@@ -182,7 +182,7 @@ std::string print_check_text(const PrintCheck& check) {
     text += regions_text("cups and traps", check.cavities,
                          [](const PrintCavity& cavity) { return end_of(cavity); });
     if (const PeelArea* const layer = largest(check.layers, &PeelArea::area_mm2))
-        text += fmt::format("  largest area: {} mm2 at z = {} mm, of which {} mm2 are connected\n",
+        text += fmt::format("  largest area: {} mm2 at z = {} mm, in one piece at most {} mm2\n",
                             brief(layer->area_mm2), height(layer->bottom_mm), brief(layer->largest_mm2));
     if (check.findings.first(Severity::warning) == nullptr)
         text += "  no islands, no cups, no traps, no empty layers\n";

@@ -17,8 +17,8 @@ struct PrintCheckOptions {
     /// island, mm^2. At 0, only material that does not overlap it.
     double touch_mm2 = 0;
     /// Smallest angle between a surface that faces the plate and the plate, in degrees, at which a layer is
-    /// carried by the one below: above 0, below 90. A thousandth of the reach that results is granted for
-    /// rounding.
+    /// carried by the one below: above 0, below 90. Layers may reach a thousandth farther than
+    /// this angle lets them, for rounding.
     double overhang_angle = 45;
     /// Limit of the memory for crossings, offsets and unions of layers; see layer_limits.
     std::uint64_t max_memory = 0;
@@ -52,12 +52,12 @@ struct PrintCavity : PrintRegion {
     bool on_plate = false; ///< it begins in the lowest layer with material: the plate closes it
     bool opens = false;    ///< it joins the space outside in the layer above its last, or above all layers
 
-    /// A trap never opens, and resin in it stays there. Other cavities are cups: while they are printed, the
-    /// film closes them, and lifting the plate makes a vacuum in them.
+    /// A trap never opens, and the plate does not close it: resin in it stays there. Other cavities are cups.
+    /// While either is printed, the film closes it, and lifting the plate makes a vacuum in it.
     [[nodiscard]] bool trap() const noexcept { return !opens && !on_plate; }
 };
 
-/// Areas of a layer, of which forces on the printed part depend.
+/// Areas of a layer, on which forces on the printed part depend.
 struct PeelArea {
     std::uint64_t index = 0;
     double bottom_mm = 0;

@@ -31,7 +31,8 @@ struct PlateTravel {
 };
 
 /// A range of heights above the plate with its own exposure time, from the bottom of the part upwards. A
-/// layer belongs to the range if its middle does; if several ranges have it, to the last of them.
+/// layer belongs to the range if its middle does; if several ranges have it, to the last of them. Those of a
+/// file do not overlap.
 struct ExposureRange {
     double from_mm = 0;
     double to_mm = 0;

@@ -136,7 +136,7 @@ class AnycubicWriter final : public ResinFile {
     void add_machine(BinaryFields& head) const {
         head.text("MACHINE", 12).u32(machine_bytes).text(machine_name(), 96).text("pw0Img", 16);
         head.u32(most_shades).u32(7); // the second are the properties that files of Photon Workshop have
-        head.f32(display().width_mm()).f32(display().height_mm()).f32(machine_mm());
+        head.f32(display().image_mm().x).f32(display().image_mm().y).f32(machine_mm());
         head.u32(516).u32(0x00634701);
     }
 

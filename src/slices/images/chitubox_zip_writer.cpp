@@ -86,8 +86,8 @@ class ChituboxZipWriter final : public ResinArchive {
         add_number("layerHeight", totals.layer_mm);
         add("resolutionX", grid().width);
         add("resolutionY", grid().height);
-        add_number("machineX", display().width_mm());
-        add_number("machineY", display().height_mm());
+        add_number("machineX", display().image_mm().x);
+        add_number("machineY", display().image_mm().y);
         add_number("machineZ", machine_mm());
         add("projectType", "mirror_LCD");
         add_number("normalExposureTime", plan().exposure_s());

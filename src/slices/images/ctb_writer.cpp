@@ -209,7 +209,7 @@ class ChituboxWriter final : public ResinFile {
                     BinaryFields& head) const {
         const ResinSettings& settings = plan().settings();
         head.u32(kind_.magic).u32(kind_.version);
-        head.f32(display().width_mm()).f32(display().height_mm()).f32(machine_mm()).zeros(8);
+        head.f32(display().image_mm().x).f32(display().image_mm().y).f32(machine_mm()).zeros(8);
         head.f32(totals.height_mm).f32(totals.layer_mm);
         head.f32(plan().exposure_s()).f32(plan().bottom_exposure_s()).f32(light_off_s(settings.travel));
         head.u32(plan().bottom_layers()).u32(grid().width).u32(grid().height);

@@ -20,6 +20,10 @@ struct Display {
 
     [[nodiscard]] double width_mm() const noexcept { return pixels.x * pixel_mm.x; }
     [[nodiscard]] double height_mm() const noexcept { return pixels.y * pixel_mm.y; }
+    /// Returns the size along the columns and along the rows of an image.
+    [[nodiscard]] AlongXY<double> image_mm() const noexcept {
+        return portrait ? AlongXY<double>{height_mm(), width_mm()} : AlongXY<double>{width_mm(), height_mm()};
+    }
     [[nodiscard]] double pixel_mm2() const noexcept { return pixel_mm.x * pixel_mm.y; }
 
     /// Returns the pixel grid with the middle of the box in the middle of the display.

@@ -79,7 +79,7 @@ class GooWriter final : public ResinFile {
     void add_display(const ResinTotals& totals, BinaryFields& head) const {
         head.u32(totals.layers).u16(grid().width).u16(grid().height);
         head.u8(display().mirror_x ? 1 : 0).u8(display().mirror_y ? 1 : 0);
-        head.f32(display().width_mm()).f32(display().height_mm()).f32(machine_mm());
+        head.f32(display().image_mm().x).f32(display().image_mm().y).f32(machine_mm());
         head.f32(totals.layer_mm).f32(plan().exposure_s());
     }
 

@@ -5,11 +5,14 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 
 namespace lamella {
 
 namespace {
+
+constexpr double same_s = 1e-3; // files have single precision, or milliseconds
 
 void keep_positive(double& value, double preset) {
     if (!(value > 0) || !std::isfinite(value))
@@ -41,6 +44,24 @@ void keep_exposure(std::optional<double>& seconds) {
         seconds.reset();
 }
 
+/// Returns the number of layers above the bottom layers over which the exposure changes in equal steps; 0 if
+/// it does not.
+std::uint32_t transition_of(const ResinSettings& settings, std::span<const double> exposures_s) {
+    const std::size_t bottom = settings.bottom_layers.value_or(0);
+    if (!settings.exposure_s || !settings.bottom_exposure_s || bottom >= exposures_s.size())
+        return 0;
+    const double change = *settings.exposure_s - *settings.bottom_exposure_s;
+    const double step = exposures_s[bottom] - *settings.bottom_exposure_s;
+    const double steps = std::round(change / step);
+    if (!(steps >= 2 && steps <= static_cast<double>(exposures_s.size() - bottom)))
+        return 0;
+    for (std::size_t i = 1; i <= static_cast<std::size_t>(steps); ++i)
+        if (std::abs(*settings.bottom_exposure_s + static_cast<double>(i) / steps * change -
+                     exposures_s[bottom + i - 1]) > same_s)
+            return 0;
+    return static_cast<std::uint32_t>(steps) - 1;
+}
+
 } // namespace
 
 ResinSettings usable_settings(ResinSettings settings) {
@@ -61,9 +82,10 @@ ResinSettings usable_settings(ResinSettings settings) {
 }
 
 ResinSettings settings_of(const ResinJob& job, std::span<const Layer> planes) {
-    constexpr double same_s = 1e-3; // files have single precision, or milliseconds
     ResinSettings settings = usable_settings(job.settings);
     settings.ranges.clear();
+    if (const std::uint32_t layers = transition_of(settings, job.exposures_s); layers > 0)
+        settings.transition_layers = layers;
     const ResinPlan plan(settings, {});
     const std::size_t layers = std::min(planes.size(), job.exposures_s.size());
     const double plate = planes.empty() ? 0 : planes.front().bottom;

@@ -40,6 +40,22 @@ TEST(ResinJob, KeepsTheExposureOfEachLayer) {
     EXPECT_EQ(exposures_by(settings, planes), job.exposures_s);
 }
 
+TEST(ResinJob, KnowsTheTransitionThatTheExposuresOfLayersHave) {
+    const LayerStack planes = planes_of(12);
+    for (const std::uint32_t layers : {0U, 1U, 3U, 9U}) {
+        ResinSettings rule{.exposure_s = 2.7, .bottom_exposure_s = 30, .bottom_layers = 2, .transition_layers = layers};
+        ResinJob job{.settings = rule};
+        job.exposures_s = exposures_by(rule, planes);
+        job.settings.transition_layers = 0; // as files say in which each layer has its own exposure
+        ResinSettings settings = settings_of(job, planes);
+        EXPECT_EQ(settings.transition_layers, layers);
+        EXPECT_TRUE(settings.ranges.empty());
+        settings.exposure_s = 2; // as an option replaces it
+        rule.exposure_s = 2;
+        EXPECT_EQ(exposures_by(settings, planes), exposures_by(rule, planes));
+    }
+}
+
 TEST(ResinJob, HasSettingsThatPrintersCanFollow) {
     ResinSettings zeros{.exposure_s = 0,
                         .bottom_exposure_s = std::numeric_limits<double>::quiet_NaN(),
