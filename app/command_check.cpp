@@ -147,7 +147,7 @@ int run_check(const CheckArguments& arguments, const Context& context) {
     } else if (arguments.stats != "-" && arguments.report != "-") {
         context.messages.result(fmt::format(
             "{}: {}, {}\n{}", one_line(input_name(arguments.input)), counted(check.layers.size(), "layer"),
-            ok ? "sound to print" : "not sound to print", print_check_text(check)));
+            ok ? "no errors found" : "not sound to print", print_check_text(check)));
     }
     if (arguments.strict && !ok)
         throw Error(ErrorKind::defect, fmt::format("{}: the check failed", input_name(arguments.input)));

@@ -80,7 +80,7 @@ Command printers_command() {
         .summary = "list resin printers",
         .description = "Lists the resin printers that the option --printer of other commands knows, with the "
                        "extension of their files, the pixels of their display, and its size with the largest "
-                       "height of a part. Nobody has tried the files on most of these printers yet.",
+                       "height of a part. Nobody has tried the files on any of these printers yet.",
         .operands = {{.placeholder = "WORD",
                       .help = "lists only printers with this word, or part of one, in their names",
                       .required = false,

@@ -360,7 +360,11 @@ def test_settings_are_converted_and_options_win(part, tmp_path):
                             text=True)
     assert result.returncode == 2
     assert "(ELEGOO Mars 4 DLP)" in result.stderr and "Elegoo Saturn 3 Ultra has" in result.stderr
+    (tmp_path / "range.toml").write_text('[exposure_ranges]\n"1:2" = 9\n')
     result = run("convert", sliced(part, tmp_path / "f.photon", "Anycubic Photon"), tmp_path / "f.nanodlp")
+    assert result.stderr == ""  # the transition has a place of its own
+    ranges = sliced(part, tmp_path / "g.photon", "Anycubic Photon", "--resin", tmp_path / "range.toml")
+    result = run("convert", ranges, tmp_path / "f.nanodlp")
     assert "1 setting of the job was left out" in result.stderr and (tmp_path / "f.nanodlp").exists()
 
 

@@ -112,6 +112,13 @@ class Check(ProgramTest):
         self.assertTrue(self.succeed("check", "table.json", "--report", "-").text.lower().startswith("<!doctype html>"))
         self.fail_with(2, "both would go to standard output", "check", "table.json", "--report", "-", "--stats", "-")
 
+    def test_layers_of_a_file_stay_where_they_are_and_take_steps(self):
+        self.succeed("slice", self.table(), "-o", "table.json", "--layer-height", "0.5")
+        self.assertEqual(self.succeed("check", "table.json", "--json").json()["islands"], 1)
+        self.assertEqual(self.succeed("check", "table.json", "--json", "--largest-only").json()["islands"], 0)
+        for options in ["--layer-height", "0.5"], ["--rotate-x", "90"], ["--layers", "1:5"], ["--slice-at", "top"]:
+            self.fail_with(2, "table.json: holds layers, and these stay where they are", "check", "table.json", *options)
+
     def test_slice_checks_while_it_slices(self):
         self.table()
         alone = self.succeed("check", "table.stl", "--layer-height", "0.5", "--json").json()

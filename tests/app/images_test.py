@@ -137,6 +137,29 @@ class Images(ProgramTest):
                         grey += 0 < found < 255
                 self.assertGreater(grey, 600)
 
+    def test_converted_jobs_keep_transition_display_and_printer(self):
+        self.box(size="2,2,12")
+        self.succeed("slice", "box.stl", "-o", "a.goo", "--printer", "Mars 4 DLP", "--layer-height", "1")
+        first = self.succeed("info", "a.goo", "--json").json()["exposures_s"]
+        self.assertGreater(len(set(first)), 4)
+        self.succeed("convert", "a.goo", "b.goo", "--exposure", "2.1")
+        second = self.succeed("info", "b.goo", "--json").json()["exposures_s"]
+        self.assertEqual([len(set(second)), second[0], round(second[-1], 4)], [len(set(first)), first[0], 2.1])
+        for before, after in zip(first, second):
+            share = (first[0] - before) / (first[0] - first[-1])
+            self.assertAlmostEqual(after, first[0] - share * (first[0] - 2.1), delta=0.002)
+        warning = "the job is for the Elegoo Mars 4 DLP, which reads files of the format goo (.goo), not ctb; name another printer with --printer"
+        self.assertIn(warning, self.succeed("convert", "a.goo", "a.ctb").err)
+        self.assertNotIn("the job is for", self.succeed("convert", "a.goo", "c.goo").err)
+        self.succeed("slice", "box.stl", "-o", "a.sl1", "--layer-height", "1")
+        of_sl1 = self.succeed("info", "a.sl1", "--json").json()
+        self.succeed("convert", "a.sl1", "d.goo")
+        of_goo = self.succeed("info", "d.goo", "--json").json()
+        self.assertEqual(of_goo["pixels"], [1440, 2560])
+        for mm, pixels in zip(of_goo["display_mm"], of_goo["pixels"]):
+            self.assertAlmostEqual(mm / pixels, 0.04725, places=6)
+        self.assertEqual(of_sl1["pixels"], of_goo["pixels"])
+
     def test_black_and_white_takes_one_bit(self):
         for name, bits in [("grey", 8), ("white", 1)]:
             self.succeed("slice", self.box(), "-o", name, "--format", "png", "--layer-height", "5", "--antialias", str(bits))

@@ -80,7 +80,8 @@ struct PrintCheck {
 };
 
 /// Checks the material of all parts together, layer by layer, where each layer is what the source has: exact
-/// contours, or the outlines of pixels. Parts that are supports carry others. The lowest layer with material
+/// contours, or the outlines of pixels. Material is where the winding number is
+/// above 0: inverted bodies are none. Parts that are supports carry others. The lowest layer with material
 /// stands on the plate. Holds a layer and the one below it for each thread, and the cells of one layer.
 /// Parallel over planes, with the same result for any number of threads. Expected O(n log n) for n points.
 /// Throws Error{usage} for wrong options, the errors of `overlaps` and `offset`, and those of
