@@ -5,6 +5,7 @@
 #include "command_line.hpp"
 #include "commands.hpp"
 #include "failure.hpp"
+#include "figures.hpp"
 #include "messages.hpp"
 #include "options.hpp"
 #include "text_file.hpp"

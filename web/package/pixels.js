@@ -35,10 +35,11 @@ function fill(pixels, rows, width, height, bits) {
  * @param {(bytes: number) => Uint8Array} roomFor makes the array
  */
 export async function pixelsOf(files, roomFor) {
-  const manifest = JSON.parse(new TextDecoder().decode(files['manifest.json']));
+  const folder = Object.keys(files)[0].replace(/[^/]*$/, '');
+  const manifest = JSON.parse(new TextDecoder().decode(files[`${folder}manifest.json`]));
   const { width, height, bits, layers, pixel_mm: size, column, row } = manifest;
   const data = roomFor(width * height * layers.length);
-  for (const [i, { file }] of layers.entries()) fill(data.subarray(i * width * height, (i + 1) * width * height), await rowsOf(files[file]), width, height, bits);
+  for (const [i, { file }] of layers.entries()) fill(data.subarray(i * width * height, (i + 1) * width * height), await rowsOf(files[folder + file]), width, height, bits);
   return {
     data,
     shape: [layers.length, height, width],
