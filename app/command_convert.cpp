@@ -70,12 +70,15 @@ int run_convert(const ConvertArguments& arguments, const Context& context) {
         info.parts.front().label = arguments.label;
     }
     arguments.writing.image.apply_to(file, format, info, options);
+    if (const auto warning = arguments.writing.image.other_printer(file, format)) {
+        if (arguments.strict)
+            throw Error(ErrorKind::defect, fmt::format("{}: {}", file.path, *warning));
+        context.messages.warn_of(file.path, {*warning});
+    }
     const std::unique_ptr<LayerWriter> writer = open_layer_writer(arguments.output, format, info, options);
     write_planes(*writer, file, !steps.any(), arguments.strict, context.messages, execution, max_memory);
     writer->finish();
     context.messages.warn_of(output_name(arguments.output), writer->warnings());
-    if (const auto warning = arguments.writing.image.other_printer(file, format))
-        context.messages.warn_of(output_name(arguments.output), {*warning});
 
     std::string text =
         fmt::format("{}: {} from {} ({}) as {}\n", one_line(output_name(arguments.output)),

@@ -26,10 +26,11 @@ void warn_about(const LayerFile& file, const std::vector<std::string>& warnings,
 }
 
 void refuse_options_of_meshes(const LayerFile& file) {
-    throw Error(ErrorKind::usage,
-                fmt::format("{}: holds layers, and these stay where they are; options of where a part stands and "
-                            "how it is cut are for meshes",
-                            file.path));
+    throw Error(
+        ErrorKind::usage,
+        fmt::format("{}: holds layers, and these stay where they are; options of where a part stands and "
+                    "how it is cut are for meshes",
+                    file.path));
 }
 
 void write_planes(LayerWriter& writer, const LayerFile& file, bool search_rings, bool strict,

@@ -26,8 +26,8 @@ struct LayeringOptions {
     std::optional<double> snap;
 
     [[nodiscard]] bool given() const {
-        return layer_height || first_layer_height || slice_at != "middle" || only.z_range || only.index_range ||
-               !z_list.empty() || !heights.empty() || adaptive || cusp || snap;
+        return layer_height || first_layer_height || slice_at != "middle" || only.z_range ||
+               only.index_range || !z_list.empty() || !heights.empty() || adaptive || cusp || snap;
     }
     /// Returns the layering that the options define; reads the list of z if there is one. Throws Error{usage}
     /// for options that contradict each other, and the errors of read_z_list, which gets `max_memory`.

@@ -70,7 +70,8 @@ Figures resin_figures(const LayerFile& file) {
     const ResinJob& job = *file.resin;
     Figures figures;
     if (!job.version.empty())
-        figures.push_back({"format_version", job.version, "version", one_line(job.version) + " (of the format)"});
+        figures.push_back(
+            {"format_version", job.version, "version", one_line(job.version) + " (of the format)"});
     if (!job.printer.empty())
         figures.push_back({"printer", job.printer, "printer", one_line(job.printer)});
     figures.push_back({"pixels",

@@ -52,7 +52,6 @@ def _columns_and_rows(name: str, value: Any) -> Tuple[int, int]:
     return check.pair(name, value, "two whole numbers (columns, rows)", partial(check.whole, least=1, most=check.MOST_PIXELS))
 
 
-# Types of arguments, each with its check.
 def _grey_curve(name: str, points: Any) -> Tuple[Tuple[float, float], ...]:
     words = "pairs of two numbers (covered part, grey value)"
 
@@ -82,6 +81,7 @@ def _resin_settings(name: str, settings: Any) -> ResinSettings:
     return ResinSettings(os.fsencode(path), tables_of(path, text))
 
 
+# Types of arguments, each with its check.
 Resin = Annotated[Union[Mapping[str, Any], Readable], _resin_settings]
 GreyCurve = Annotated[Sequence[Tuple[float, float]], _grey_curve]
 PartColours = Annotated[Union[bool, Sequence[Tuple[int, int, int]]], _part_colours]

@@ -150,6 +150,8 @@ class Images(ProgramTest):
             self.assertAlmostEqual(after, first[0] - share * (first[0] - 2.1), delta=0.002)
         warning = "the job is for the Elegoo Mars 4 DLP, which reads files of the format goo (.goo), not ctb; name another printer with --printer"
         self.assertIn(warning, self.succeed("convert", "a.goo", "a.ctb").err)
+        self.fail_with(4, "a.goo: the job is for the Elegoo Mars 4 DLP", "convert", "a.goo", "b.ctb", "--strict")
+        self.assertFalse(self.path("b.ctb").exists())
         self.assertNotIn("the job is for", self.succeed("convert", "a.goo", "c.goo").err)
         self.succeed("slice", "box.stl", "-o", "a.sl1", "--layer-height", "1")
         of_sl1 = self.succeed("info", "a.sl1", "--json").json()

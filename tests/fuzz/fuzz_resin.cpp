@@ -1,6 +1,6 @@
 // Any bytes as the images of a file for resin printers, behind its checksums and its large head. The first
-// byte chooses the format, unless the target is for one of them. The rest is the code of the only layer; of PNG files, the rows before compression;
-// of archives, their texts. The result is an error, or sound layers.
+// byte chooses the format, unless the target is for one of them. The rest is the code of the only layer; of
+// PNG files, the rows before compression; of archives, their texts. The result is an error, or sound layers.
 
 #include "archive.hpp"
 #include "promises.hpp"

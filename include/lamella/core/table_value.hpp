@@ -1,5 +1,7 @@
 #pragma once
 
+// Tables of settings, in whatever format people write them.
+
 #include "lamella/core/api.hpp"
 
 #include <cstdint>

@@ -17,8 +17,8 @@ struct PrintCheckOptions {
     /// island, mm^2. At 0, only material that does not overlap it.
     double touch_mm2 = 0;
     /// Smallest angle between a surface that faces the plate and the plate, in degrees, at which a layer is
-    /// carried by the one below: above 0, below 90. Layers may reach a thousandth farther than
-    /// this angle lets them, for rounding.
+    /// carried by the one below: above 0, below 90. Layers may reach a thousandth farther than this angle
+    /// lets them, for rounding.
     double overhang_angle = 45;
     /// Limit of the memory for crossings, offsets and unions of layers; see layer_limits.
     std::uint64_t max_memory = 0;
@@ -80,12 +80,11 @@ struct PrintCheck {
 };
 
 /// Checks the material of all parts together, layer by layer, where each layer is what the source has: exact
-/// contours, or the outlines of pixels. Material is where the winding number is
-/// above 0: inverted bodies are none. Parts that are supports carry others. The lowest layer with material
-/// stands on the plate. Holds a layer and the one below it for each thread, and the cells of one layer.
-/// Parallel over planes, with the same result for any number of threads. Expected O(n log n) for n points.
-/// Throws Error{usage} for wrong options, the errors of `overlaps` and `offset`, and those of
-/// PlaneSource::run.
+/// contours, or the outlines of pixels. Material is where the winding number is above 0: inverted bodies are
+/// none. Parts that are supports carry others. The lowest layer with material stands on the plate. Holds a
+/// layer and the one below it for each thread, and the cells of one layer. Parallel over planes, with the
+/// same result for any number of threads. Expected O(n log n) for n points. Throws Error{usage} for wrong
+/// options, the errors of `overlaps` and `offset`, and those of PlaneSource::run.
 [[nodiscard]] PrintCheck check_print(const PlaneSource& source, const PrintCheckOptions& options = {},
                                      const Execution& execution = {});
 

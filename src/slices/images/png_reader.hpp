@@ -19,8 +19,8 @@ namespace lamella {
 
 /// Decodes the image. Greys of fewer than 8 bits become 0 to 255, colours their largest part, and what is
 /// transparent black. Of a palette with transparent colours, only how opaque they are counts: all others are
-/// 255, as in images by part. Three columns may be the colours of one pixel, as some printers expect it. Throws
-/// Error{input} for damaged files, other sizes than that of the image, interlaced files, and 16 bits.
+/// 255, as in images by part. Three columns may be the colours of one pixel, as some printers expect it.
+/// Throws Error{input} for damaged files, other sizes than that of the image, interlaced files, and 16 bits.
 void decode_png(std::string_view file, const std::string& name, RunBuilder& image, ReadLimits& limits);
 
 } // namespace lamella

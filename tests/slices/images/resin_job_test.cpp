@@ -43,7 +43,8 @@ TEST(ResinJob, KeepsTheExposureOfEachLayer) {
 TEST(ResinJob, KnowsTheTransitionThatTheExposuresOfLayersHave) {
     const LayerStack planes = planes_of(12);
     for (const std::uint32_t layers : {0U, 1U, 3U, 9U}) {
-        ResinSettings rule{.exposure_s = 2.7, .bottom_exposure_s = 30, .bottom_layers = 2, .transition_layers = layers};
+        ResinSettings rule{
+            .exposure_s = 2.7, .bottom_exposure_s = 30, .bottom_layers = 2, .transition_layers = layers};
         ResinJob job{.settings = rule};
         job.exposures_s = exposures_by(rule, planes);
         job.settings.transition_layers = 0; // as files say in which each layer has its own exposure
